@@ -1,22 +1,21 @@
 //! Ctrl-C: the first one asks what is under way to end and to keep what is done, the second one ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use gudgeon_scene::Stopped;
+use signal_hook::{consts::SIGINT, flag};
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// Exit code of a program that Ctrl-C ended, as shells have it.
 const KILLED: i32 = 130;
 
-/// Listens for Ctrl-C. Where that cannot be had, the first one ends the program, as it does without.
+/// Listens for Ctrl-C, without a thread for it. Where that cannot be had, the first one ends the program, as it does without.
 pub fn listen() {
-    let _ = ctrlc::set_handler(|| {
-        if ASKED.swap(true, Ordering::Relaxed) {
-            #[expect(clippy::exit, reason = "the user asked twice")]
-            std::process::exit(KILLED);
-        }
-    });
+    // In this order, so that the first one only asks.
+    let _ = flag::register_conditional_shutdown(SIGINT, KILLED, Arc::clone(&ASKED))
+        .and_then(|_| flag::register(SIGINT, Arc::clone(&ASKED)));
 }
 
 /// Whether work may go on.

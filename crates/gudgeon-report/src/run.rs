@@ -59,15 +59,19 @@ pub fn write_run_in(run: &RunResult, mut folder: Folder) -> Result<RunFiles, Rep
 pub fn run_files(run: &RunResult) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let summary = Summary::new(run);
     // Half of the work is the digits of the series.
-    let (series, page) =
-        side_by_side(|| table::series_csv(&run.series), || page(&summary, &run.series, &run.tables));
+    let (series, others) = side_by_side(|| table::series_csv(&run.series), || others(run, &summary));
     let mut files = vec![(SERIES.to_owned(), series?)];
-    for (name, t) in &run.tables {
-        files.push((file_of(name), table::series_csv(t)?));
-    }
-    files.push((REPORT.into(), page.into_bytes()));
+    files.extend(others?);
+    Ok(files)
+}
+
+/// The files of a run beside its series.
+fn others(run: &RunResult, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let tables = run.tables.iter().map(|(name, t)| Ok((file_of(name), table::series_csv(t)?)));
+    let mut files = tables.collect::<Result<Vec<_>, ReportError>>()?;
+    files.push((REPORT.into(), page(summary, &run.series, &run.tables).into_bytes()));
     files.push((TIMING.into(), timing(run).into_bytes()));
-    files.push((SUMMARY.into(), text(&summary).into_bytes()));
+    files.push((SUMMARY.into(), text(summary).into_bytes()));
     Ok(files)
 }
 
