@@ -21,6 +21,9 @@ pub fn soft(w: f64, floor: f64) -> f64 {
     0.5 * (w + (w * w + 4.0 * floor * floor).sqrt())
 }
 
+/// A velocity that no cap tells from a higher one \[m/s\].
+const BEYOND: f64 = 1e9;
+
 /// From 0 to 1, without a corner.
 fn ramp(x: f64) -> f64 {
     x * x * (3.0 - 2.0 * x)
@@ -63,14 +66,15 @@ impl Needed {
     /// for what is needed, by what the film carries.
     pub fn velocity(&self, v: f64, film: &FaceForces, resisted: &Resisted) -> f64 {
         let (w, floor) = (self.load + resisted.force, self.floor);
-        if w >= 0.0 {
+        let (lacks, slope) = if w >= 0.0 {
             let all = soft(w, floor);
-            v - (all - film.load) / (film.squeeze_damping + resisted.slope * all / (2.0 * all - w))
+            (all - film.load, film.squeeze_damping + resisted.slope * all / (2.0 * all - w))
         } else {
             let load = film.load.max(LEAST * floor);
             let damping = film.squeeze_damping * (1.0 + (floor / load).powi(2));
-            v - (w - load + floor * floor / load) / (damping + resisted.slope)
-        }
+            (w - load + floor * floor / load, damping + resisted.slope)
+        };
+        v - (lacks / slope.max(f64::MIN_POSITIVE)).clamp(-BEYOND, BEYOND)
     }
 }
 
@@ -176,10 +180,20 @@ impl Search<'_> {
         RadialResponse::new(hdot, Some(FaceForces::default()), limited)
     }
 
-    /// A radial velocity within its cap and within the ends of the way.
+    /// What the cap leaves of a radial velocity, as a part of it.
+    fn part(&self, free: f64) -> f64 {
+        1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt()
+    }
+
+    /// A radial velocity within its cap.
+    pub fn capped(&self, free: f64) -> f64 {
+        free * self.part(free)
+    }
+
+    /// The same within the ends of the way.
     pub fn bounded(&self, at: &RadialState, free: f64, limited: &mut Limited) -> f64 {
         let (h, (lowest, band), furthest) = (at.thickness, at.lowest, at.furthest);
-        let part = 1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt();
+        let part = self.part(free);
         limited.slowed = 1.0 - part;
         if free > 0.0 {
             free * part * ((furthest - h) / (self.limits.retreat_band * furthest)).clamp(0.0, 1.0)

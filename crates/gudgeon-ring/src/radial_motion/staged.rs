@@ -18,7 +18,7 @@ const REACH: f64 = 1.0;
 /// Film thicknesses \[m\] between which trials stay: no groove is deeper, and nothing is thinner.
 const THICKNESSES: std::ops::Range<f64> = 1e-26..0.1;
 
-/// Square of a velocity off the liner over its cap up to which a trial is taken at its word.
+/// Largest square of a velocity off the liner over its cap: what the cap leaves of a hundred times the cap.
 const NEAR_CAP: f64 = 0.9999;
 
 /// The film thickness \[m\] of a trial.
@@ -83,7 +83,6 @@ impl Staged<'_> {
             return Ok(answer);
         }
         if !self.before.off && self.search.is_off(loads.state()) {
-            // With a drag the balance has another slope.
             self.before = Before { off: true, slope: 0.0 };
             if let Some(answer) = self.free(stage, x, loads)? {
                 return Ok(answer);
@@ -126,7 +125,10 @@ impl Staged<'_> {
         };
         let Some(Trial { response, film, is_limited: false, .. }) = last else { return Ok(None) };
         *x = found.x;
-        let known = Before { slope: found.slope, off: response.limited.drag > 0.0 };
+        // It stays what it is until the ring is back: with a drag the balance has another slope.
+        let off = self.before.off && self.search.is_off(loads.state());
+        let slope = if off == self.before.off { found.slope } else { 0.0 };
+        let known = Before { slope, off };
         Ok(Some(Answer { response, film, known }))
     }
 
@@ -136,10 +138,11 @@ impl Staged<'_> {
         let h = thickness(x)?;
         loads.set_thickness(h)?;
         let way = x - stage.base[0];
-        let (hdot, cap) = (h * way / per, self.search.limits.radial_speed);
+        let hdot = h * way / per;
         // The velocity that the cap on it turns into this one.
         let most = if self.before.off { NEAR_CAP } else { 1.0 - 1e-12 };
-        let free = hdot / (1.0 - (hdot / cap).powi(2).min(most)).sqrt();
+        let part = (1.0 - (hdot / self.search.limits.radial_speed).powi(2).min(most)).sqrt();
+        let free = hdot / part;
         let needed = Needed::of(loads.state(), self.search.limits.min_load);
         let film = loads.film(free)?;
         let off = if self.before.off { self.search.drag_at(loads, needed, (free, &film))? } else { 0.0 };
@@ -150,12 +153,12 @@ impl Staged<'_> {
         let mut limited = Limited::default();
         (limited.lifted, limited.contact_drag) = (needed.lifted(&resisted), parting * free);
         if off > 0.0 {
-            (limited.drag, limited.slowed) = (off * free.abs(), 1.0 - hdot / free);
+            (limited.drag, limited.slowed) = (off * free.abs(), 1.0 - part);
         }
         let (lacks, slope) = if self.before.off {
             // A film that hardly resists balances at velocities that differ by orders: how far the ring comes by the one that follows from here.
-            let follows = needed.velocity(free, &film, &resisted);
-            (way - per * follows / ((1.0 + (follows / cap).powi(2)).sqrt() * h), 0.0)
+            let follows = self.search.capped(needed.velocity(free, &film, &resisted));
+            (way - per * follows / h, 0.0)
         } else {
             let slope = (film.squeeze_damping + resisted.slope) * h / (per * at.tension);
             (needed.lacks(film.load, &resisted) / at.tension, slope)
