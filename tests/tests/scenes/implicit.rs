@@ -324,14 +324,14 @@ fn steps_of_the_cycle_before_are_taken_again() {
     assert!(count("cycles") > 3.0 && count("rejected") < 0.15 * count("steps"), "{:?}", r.solver.counters);
 }
 
-/// With oil on the liner halves may part for some cycles. Where they go on to do so they are given up as soon as that shows, and not after forty cycles: of thirty speeds within 0.003 rpm
-/// two thirds after nine, most others sooner, where a cycle of halves that are apart cannot be integrated any more.
+/// With oil on the liner halves may part for some cycles. Where they go on to do so they are given up as soon as that shows, and not after forty cycles: at all of nine speeds
+/// from 2600 to 2800 rpm after nine. (Below some 2500 rpm halves may also agree on another periodic state of this pack, whose ring 2 does not leave the liner.)
 #[test]
 fn halves_with_oil_that_part_are_given_up_soon() {
     let own = [
         "solver.integrator=waveform",
         "solver.tolerance=5e-3",
-        "engine.speed=2460 rpm",
+        "engine.speed=2700 rpm",
         "rings.0.cold_gap=0.363 mm",
         "rings.0.mass=48.1 g",
         "models.contact.composite_modulus=137.8 GPa",
