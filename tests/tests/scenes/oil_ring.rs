@@ -220,14 +220,16 @@ fn rails_in_a_closed_or_drained_groove() {
 
 #[test]
 fn friction_rises_with_the_tension_of_the_rails() {
+    // Good to 1e-3: a third of the tension is a tenth of the friction, and what is asked for next is 0.05.
+    let rough = "solver.tolerance=1e-3";
     let of = |force: &str| {
-        let r = diesel(&[&THREE_PIECE, &[&format!("rings.2.tangential_force={force}")]]);
+        let r = diesel(&[&THREE_PIECE, &[&format!("rings.2.tangential_force={force}"), rough]]);
         value(&r, "ring3.friction_power") + value(&r, "ring4.friction_power")
     };
     let rails = ["30 N", "60 N", "90 N"].map(of);
     assert!(rails[0] < rails[1] && rails[1] < rails[2], "{rails:?}");
     // Two lands or two rails of the same face under the same force rub alike: what differs is gas behind and beside them.
-    let twin = value(&diesel(&[]), "ring3.friction_power");
+    let twin = value(&diesel(&[&[rough]]), "ring3.friction_power");
     assert!((rails[1] / twin - 1.0).abs() < 0.05, "{} {twin}", rails[1]);
 }
 
