@@ -3,16 +3,16 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{Figure, RunResult, Series};
+use gudgeon_core::result::{Difference, Figure, RunResult, Series};
 use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::json;
 
 use crate::folder::Folder;
-use crate::number::{percent, significant, unit};
+use crate::number::{significant, unit};
 use crate::page::{self, Kind, esc};
 use crate::summary::{EventEntry, Summary};
-use crate::{REPORT, ReportError, inputs, overview, results, table};
+use crate::{REPORT, ReportError, differences, inputs, overview, results, table};
 
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SERIES: &str = "series.csv";
@@ -293,12 +293,10 @@ fn branches(out: &mut String, s: &Summary) {
         let first = s.branches.first().and_then(|b| b.results.get(name)).and_then(|v| v.value);
         for (i, b) in s.branches.iter().enumerate() {
             let v = b.results.get(name).and_then(|v| v.value);
-            let difference = match (first, v) {
-                (Some(a), Some(v)) if i > 0 && a != 0.0 => {
-                    format!(" <span class=\"diff\">{}</span>", percent((v - a) / a.abs() * 100.0))
-                }
-                _ => String::new(),
-            };
+            let between = |(a, v)| Difference::between((a, None), (v, None), u).filter(|_| i > 0);
+            let difference = first.zip(v).and_then(between).map_or_else(String::new, |d| {
+                format!(" <span class=\"diff\">{}</span>", differences::short(&d, u))
+            });
             let _ = write!(out, "<td class=\"num\">{}{difference}</td>", significant(v, 4));
         }
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));

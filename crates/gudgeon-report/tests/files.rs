@@ -229,6 +229,17 @@ fn a_ragged_series_is_refused_and_nothing_is_written() {
     assert!(!dir.exists());
 }
 
+/// Results of another periodic state are told beside the first: of values in per cent, of crank angles in degrees, the shorter way around.
+#[test]
+fn periodic_states_are_told_beside_the_first() {
+    let dir = scratch("states");
+    let page = read(write_run(&common::run(1), &dir).unwrap().report);
+    let (_, section) = page.split_once("<section id=\"branches\">").unwrap();
+    for told in ["all lands at 1 bar", "+18.7 %", "−56.1 %", "+8°"] {
+        assert!(section.contains(told), "{told}");
+    }
+}
+
 #[test]
 fn text_of_a_case_cannot_become_markup_or_script() {
     let dir = scratch("escape");

@@ -1,6 +1,7 @@
 //! What a scene is, and what is the same for all scenes: reading and checking a case, explaining, running, sweeping and verifying it.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
+pub mod elsewhere;
 mod error;
 mod explanation;
 pub mod foresee;

@@ -19,6 +19,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Map;
 
+use crate::elsewhere::Elsewhere;
 use crate::error::{Progress, RunError};
 use crate::explanation::Explanation;
 use crate::gradients::{self, GradientError, Varied};
@@ -83,6 +84,11 @@ pub trait SceneCase:
         loaded.refinements()
     }
 
+    /// Another start of the search of a periodic state, for cases that may have several; none where their state is the only one, or where a run tells all.
+    fn elsewhere(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Option<Elsewhere> {
+        None
+    }
+
     /// Derivatives of the results by inputs, at a fraction of the cost of runs with other inputs: from the case as it stands, and for each input the case
     /// with a slightly higher value, which `varied` builds. The inputs of the answer are filled in by the caller. `progress` is told as in [`SceneCase::run`].
     ///
@@ -126,6 +132,8 @@ pub trait Scene: Send + Sync {
     fn cycle(&self) -> Option<Result<EngineCycle, BuildError>>;
     /// As [`SceneCase::refinements`].
     fn refinements(&self) -> Vec<Refinement>;
+    /// As [`SceneCase::elsewhere`].
+    fn elsewhere(&self) -> Option<Elsewhere>;
     /// Its numbers, words and models, for a program that offers them to a person.
     fn inputs(&self) -> Vec<Input> {
         self.inputs_of(&self.resolved())
@@ -261,6 +269,10 @@ impl<C: SceneCase> Scene for Read<C> {
 
     fn refinements(&self) -> Vec<Refinement> {
         C::refinements(&self.loaded)
+    }
+
+    fn elsewhere(&self) -> Option<Elsewhere> {
+        self.look(|built| C::elsewhere(&self.loaded, built)).ok().flatten()
     }
 
     fn inputs_of(&self, resolved: &serde_json::Value) -> Vec<Input> {

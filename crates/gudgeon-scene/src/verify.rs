@@ -9,11 +9,13 @@
 //!
 //! the difference between the case as it stands and its finest level, and the rest of a geometric series behind that one (q is taken as
 //! 1/2 with one level, and as at most 9/10: a series that does not shrink is named). Periodic angles are compared around the cycle.
+//! Whether the case has another periodic state is found by another start ([`crate::elsewhere`]).
 
 use gudgeon_core::Stopped;
 use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification, change};
 use indexmap::IndexMap;
 
+use crate::elsewhere::look_elsewhere;
 use crate::error::{Progress, RunError};
 use crate::scene::{Scene, changed};
 use gudgeon_case::Refinement;
@@ -32,7 +34,7 @@ const ASSUMED: f64 = 0.5;
 
 type Results = IndexMap<String, Value>;
 
-/// Refines every group of settings; adds the uncertainties to the result, and a note where a result does not settle.
+/// Refines every group of settings; adds the uncertainties to the result, and a note where a result does not settle or the case has another periodic state.
 ///
 /// # Errors
 /// Every refinement of a group failed.
@@ -69,6 +71,7 @@ pub(crate) fn verify(
         let levels = levels.into_iter().map(|(set, _)| set).collect();
         found.refined.push(Refined { what, levels });
     }
+    look_elsewhere(scene, result, &found.uncertainty, progress)?;
     result.verification = Some(found);
     Ok(())
 }

@@ -8,6 +8,7 @@ mod common;
 mod bench;
 mod cases;
 mod compare;
+mod elsewhere;
 mod extremes;
 mod gas_balance;
 mod gas_energy;

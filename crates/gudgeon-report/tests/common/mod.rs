@@ -308,6 +308,7 @@ pub fn run(n: usize) -> RunResult {
                 results: IndexMap::from([
                     ("blow_by".into(), value(8.312, "l/min", "")),
                     ("land2.p_max".into(), value(14.7, "bar", "")),
+                    ("land2.p_max_angle".into(), value(714.0, "deg", "")),
                 ]),
             },
             Branch {
@@ -316,6 +317,7 @@ pub fn run(n: usize) -> RunResult {
                 results: IndexMap::from([
                     ("blow_by".into(), value(9.87, "l/min", "")),
                     ("land2.p_max".into(), value(6.45, "bar", "")),
+                    ("land2.p_max_angle".into(), value(2.0, "deg", "")),
                 ]),
             },
         ],

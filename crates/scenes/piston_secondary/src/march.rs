@@ -316,10 +316,8 @@ fn told(report: &OrbitReport, wanted: f64) -> Vec<Note> {
         ));
     }
     if report.period > 1 {
-        notes.push(Note::caution(
-            "subharmonic",
-            format!("the motion repeats only every {} cycles", report.period),
-        ));
+        let text = format!("the motion repeats only every {} cycles", report.period);
+        notes.push(Note::caution("subharmonic", text).amount("period", f64::from(report.period), "1"));
     }
     notes
 }

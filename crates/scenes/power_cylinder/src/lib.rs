@@ -12,6 +12,7 @@ use gudgeon_core::{BuildError, Stopwatch};
 use case::{Part, PowerCylinderCase};
 use gudgeon_case::{Level, Loaded, Refinement, Report, UsedSet, read_beside, scene_of};
 use gudgeon_machine::Engine;
+use gudgeon_scene::elsewhere::Elsewhere;
 use gudgeon_scene::{
     Checked, Explanation, Progress, RunError, Scene, SceneCase, Stopped, WorkPrecision, check_case, explain,
     load,
@@ -66,15 +67,18 @@ impl SceneCase for PowerCylinderCase {
         all
     }
 
+    /// That of the rings.
+    fn elsewhere(loaded: &Loaded<Self>, (rings, _): &mut (Checked, Checked)) -> Option<Elsewhere> {
+        let other = rings.case.elsewhere()?;
+        Some(Elsewhere { set: vec![part_with(&loaded.value.ring_pack, "ring_pack", &other.set)], ..other })
+    }
+
     /// Those of both parts, as changes to the parts.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         let Ok((rings, skirt)) = parts(loaded) else { return Vec::new() };
         let own = &loaded.value;
         let of = |case: &Checked, part: &Part, field: &str, name: &str| -> Vec<Refinement> {
-            let level = |l: Level| {
-                let all: Vec<String> = part.set.iter().chain(&l.set).map(|s| format!("{s:?}")).collect();
-                Level { set: vec![format!("{field}.set=[{}]", all.join(", "))], ..l }
-            };
+            let level = |l: Level| Level { set: vec![part_with(part, field, &l.set)], ..l };
             let levels = |all: Vec<Level>| -> Vec<Level> { all.into_iter().map(level).collect() };
             case.case
                 .refinements()
@@ -184,6 +188,12 @@ impl SceneCase for PowerCylinderCase {
         result.seconds.insert("solve".into(), begin.seconds());
         Ok(result)
     }
+}
+
+/// The change of a case that changes a part of it further.
+fn part_with(part: &Part, field: &str, set: &[String]) -> String {
+    let all: Vec<String> = part.set.iter().chain(set).map(|s| format!("{s:?}")).collect();
+    format!("{field}.set=[{}]", all.join(", "))
 }
 
 /// Headlines of the whole, then the first of the rings and of the skirt.

@@ -348,7 +348,8 @@ pub struct Models {
 pub struct SolverKeys {
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
     /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
-    /// the axial motion is decided in steps (such models have several periodic states).
+    /// the axial motion is decided in steps (such models have several periodic states). Where one is named or taken,
+    /// `--verify` tries a second one.
     #[schemars(length(max = 100))]
     pub starts: Vec<PosPressure>,
     /// Floors, caps and drags, with their reasons.

@@ -11,12 +11,13 @@ use super::gas_balance::{self, GasBalance};
 use super::headlines::headlines;
 use super::pack::Pack;
 use super::rails::TakenApart;
-use super::solve::{solve, starts, wanted};
+use super::solve::{elsewhere, solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
 use super::{assemble, draw, film_strokes, geometry, legal, liner_wear, meter, plausible, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
+use gudgeon_scene::elsewhere::Elsewhere;
 use gudgeon_scene::{
     Explanation, GradientError, MethodSetting, Progress, Reference, RunError, SceneCase, Stopped,
     WorkPrecision, default_solvers,
@@ -124,6 +125,10 @@ impl SceneCase for RingPackCase {
         let case = &loaded.value;
         let bodies = TakenApart::new(case).map_or(case.rings.len(), |apart| apart.case.rings.len());
         loaded.refinements_with(|all| case.solver.method.resolve(bodies, &mut all["solver"]))
+    }
+
+    fn elsewhere(loaded: &Loaded<Self>, pack: &mut Pack) -> Option<Elsewhere> {
+        elsewhere(&loaded.value, pack)
     }
 
     fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {

@@ -1,10 +1,13 @@
 //! Every start of a case brought to its periodic state; the distinct ones told apart.
 
 use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
+use gudgeon_scene::elsewhere::{Elsewhere, another};
 use gudgeon_scene::{Progress, RunError, Stopped};
+use indexmap::IndexMap;
 
 use super::case::RingPackCase;
 use super::evaporation;
+use super::headlines::headlines;
 use super::meter;
 use super::pack::Pack;
 use super::record::Record;
@@ -36,9 +39,30 @@ pub(super) fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
     }
     let mut s = vec![pack.p_crankcase];
     if pack.decision_interval().is_some() {
-        s.push(6e5);
+        s.push(ELSEWHERE);
     }
     s
+}
+
+/// Pressure of all lands \[Pa\] at a second start, that between the rings of an engine at load.
+const ELSEWHERE: f64 = 6e5;
+/// Starts whose pressures differ by less than this factor count as one.
+const APART: f64 = 2.0;
+
+/// The second start of a case that has one.
+pub(super) fn elsewhere(case: &RingPackCase, pack: &Pack) -> Option<Elsewhere> {
+    let &[own] = &starts(case, pack)[..] else { return None };
+    let near = (own / ELSEWHERE).max(ELSEWHERE / own) < APART;
+    let other = if near { pack.p_crankcase } else { ELSEWHERE };
+    Some(Elsewhere {
+        starts: [own, other].map(named),
+        set: vec![format!("solver.starts=[\"{:.6e} Pa\"]", other)],
+    })
+}
+
+/// A start in words.
+fn named(pressure: f64) -> String {
+    format!("all lands at {:.2} bar", pressure / 1e5)
 }
 
 /// What the solver of a case has to gather.
@@ -49,9 +73,6 @@ pub(super) fn wanted(case: &RingPackCase) -> Wanted<'_> {
         limits: &case.solver.limits,
     }
 }
-
-/// Two periodic solutions count as one when their results agree within this relative difference.
-const SAME: f64 = 5e-3;
 
 /// Solves the case.
 ///
@@ -98,21 +119,12 @@ pub fn solve(
 
 /// The distinct periodic solutions.
 fn branches(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)]) -> Vec<Branch> {
-    let m = meter(case);
+    let (m, leading) = (meter(case), headlines(&pack.names));
     let mut branches: Vec<Branch> = Vec::new();
     for (start, f) in found {
         let results = f.cycle.results(pack, m);
         let name = format!("{:.2} bar", start / 1e5);
-        let alike = |b: &&mut Branch| {
-            // Parts of a flow may be noise beside it.
-            let counts =
-                |k: &str| k != "periodicity_error" && !k.ends_with("_angle") && !k.contains(".blow_by_");
-            results.iter().filter(|(k, _)| counts(k)).all(|(k, v)| {
-                b.results.get(k).is_some_and(|w| {
-                    (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12
-                })
-            })
-        };
+        let alike = |b: &&mut Branch| another(&b.results, &results, &leading, &IndexMap::new()).is_none();
         match branches.iter_mut().find(alike) {
             Some(b) => {
                 b.start.push_str(" and ");
@@ -160,7 +172,8 @@ fn report(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)], branches:
                     "started with {}, the cycle repeats only every {p} cycles; the results are those of one of them",
                     b.start
                 ),
-            )),
+            )
+            .amount("period", f64::from(p), "1")),
         }
     }
     for (_, f) in found {
