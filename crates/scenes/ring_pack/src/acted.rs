@@ -83,7 +83,8 @@ impl Retreats {
             n => format!("{n} times"),
         };
         let text = format!(
-            "ring {ring} leaves the liner {times}, by up to {:.4} mm, for {:.2} % of the cycle (more than {:.0} um away)",
+            "ring {ring} leaves the liner {times}, by up to {:.4} mm, for {:.2} % of the cycle (more than {:.0} um away). After another \
+             start it may not: `--verify` and `solver.starts` tell",
             1e3 * most,
             100.0 * share,
             1e6 * away
