@@ -11,6 +11,10 @@
 //! which falls with `v` and has one root. It is let go where the balance asks for a speed away from the flank beyond the release
 //! speed, and held again when its velocity has come as close to that of the balance as the tolerance asks. Both limits are
 //! proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
+//!
+//! A flank that comes down on a ring faster than it pushes back, as that of a keystone groove may when the ring returns to the liner, is *entered*. It then pushes the ring out at
+//! the speed that no rebound exceeds, against forces that hardly matter, by a law whose corner is where its force ends: the ring stands on it all the way out. It is held
+//! meanwhile, as far as that speed is the balance's.
 
 use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::{FlankLaw, FlankResistance};
@@ -64,6 +68,12 @@ impl Hold {
 
 /// Release speed over the tolerance, in clearances per radian.
 const RELEASE: f64 = 10.0;
+/// Depth in a flank, in clearances, from which a ring is pushed out of it: loads of a ring press it in by a thousandth.
+const ENTERED: f64 = 0.02;
+/// What that adds to the number of a hold.
+const PUSHED_CODE: f64 = 4.0;
+/// Release speed of a ring that is pushed out, over the one that no rebound exceeds.
+const PUSHED: f64 = 4.0;
 /// Smallest rate \[1/rad\] at which the velocity of a ring must tend to that of the balance for the ring to be held: a time constant of
 /// half a degree.
 const MIN_RATE: f64 = 100.0;
@@ -229,16 +239,54 @@ pub struct Holding {
     pub differences: bool,
     /// How fast the axial balance falls with the velocity \[N s/m\] at that instant.
     pub tangent: f64,
+    /// Whether it was held within a flank, which pushes it out.
+    pushed: bool,
+}
+
+/// Depth in a flank \[m\].
+fn depth(place: &RingPlace) -> f64 {
+    (-place.s).max(place.s - place.clearance)
 }
 
 impl Holding {
     /// A free ring.
     pub const fn new(mass: f64, unit_speed: f64, omega: f64) -> Self {
-        Self { hold: Hold::Free, tolerance: 0.0, unit_speed, mass, omega, differences: false, tangent: 0.0 }
+        Self {
+            hold: Hold::Free,
+            tolerance: 0.0,
+            unit_speed,
+            mass,
+            omega,
+            differences: false,
+            tangent: 0.0,
+            pushed: false,
+        }
     }
 
-    fn release_speed(&self) -> f64 {
-        RELEASE * self.tolerance * self.unit_speed
+    fn release_speed(&self, b: &Balance<'_>) -> f64 {
+        let own = RELEASE * self.tolerance * self.unit_speed;
+        if self.pushed && depth(b.place) > 0.0 { own.max(PUSHED / b.groove.flank.per_rebound) } else { own }
+    }
+
+    /// Whether a ring is within a flank.
+    fn has_entered(&self, place: &RingPlace) -> bool {
+        depth(place) > ENTERED * self.unit_speed / self.omega
+    }
+
+    /// Has nothing hold the ring.
+    pub const fn free(&mut self) {
+        (self.hold, self.pushed) = (Hold::Free, false);
+    }
+
+    /// As a number, for the memory of a model.
+    pub const fn code(&self) -> f64 {
+        self.hold.code() + if self.pushed { PUSHED_CODE } else { 0.0 }
+    }
+
+    /// From such a number.
+    pub fn restore(&mut self, code: f64) {
+        self.pushed = code >= PUSHED_CODE;
+        self.hold = Hold::from_code(code % PUSHED_CODE);
     }
 
     /// Velocity of a held ring \[m/s\]; after a small change of its forces or its place by one step of Newton from the velocity `before`.
@@ -247,13 +295,13 @@ impl Holding {
             let w = b.away * before;
             return b.away * (w + b.force(w) / self.tangent);
         }
-        b.away * b.velocity(self.release_speed())
+        b.away * b.velocity(self.release_speed(b))
     }
 
     /// Goes through zero from below where a held ring is let go.
     pub fn wants_to_leave(&self, b: &Balance<'_>) -> f64 {
         let scale = self.mass * self.unit_speed * self.omega;
-        b.force(self.release_speed()) / scale
+        b.force(self.release_speed(b)) / scale
     }
 
     /// Positive when a free ring with the velocity `v` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled,
@@ -262,13 +310,17 @@ impl Holding {
         if self.tolerance <= 0.0 {
             return -1.0;
         }
+        if self.has_entered(b.place) {
+            let release = PUSHED / b.groove.flank.per_rebound;
+            return 1.0 - b.velocity(release) / release;
+        }
         let w = b.away * v;
         let rate = b.stiffness(w) / (self.mass * self.omega);
         let stiff = rate / MIN_RATE - 1.0;
         if stiff.is_nan() || stiff <= 0.0 {
             return -1.0;
         }
-        let release = self.release_speed();
+        let release = self.release_speed(b);
         let balanced = b.velocity(release);
         // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
         let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
@@ -276,15 +328,15 @@ impl Holding {
         stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
     }
 
-    /// Lets the ring go, or has it held by the flank `nearest`; its velocity then \[clearances per radian\].
-    pub fn switch(&mut self, nearest: Hold) -> f64 {
+    /// Lets the ring go, or has it held by the nearest flank at a place; its velocity then \[clearances per radian\].
+    pub fn switch(&mut self, place: &RingPlace) -> f64 {
         match self.hold {
             Hold::Free => {
-                self.hold = nearest;
+                (self.hold, self.pushed) = (Hold::nearest(place), self.has_entered(place));
                 0.0
             }
             hold => {
-                self.hold = Hold::Free;
+                self.free();
                 hold.away() * RELEASE * self.tolerance
             }
         }

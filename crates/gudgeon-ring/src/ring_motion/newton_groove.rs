@@ -78,7 +78,8 @@ impl Default for NewtonGroove {
     equations = "ds/dt = v;  m dv/dt = F_gas - m a_piston - m g + F_film + F_damping + F_flank;  \
                 F_flank = k d max(0, 1 + d'/v_r) for the depth d > 0 beyond the flank",
     validity = "Ring untwisted and rigid axially, flanks parallel to it. The stiffness is numerical: results do not depend on it as long as \
-               the indentation stays small against the clearance.",
+               the indentation stays small against the clearance. The speed with which a keystone groove closes or opens as the ring moves along the radius \
+               is left out of contact and films at its upper flank: a ring that returns to the liner from afar may be caught by that.",
     references = ["hunt1975", "zottin1992"],
     example = "flank_stiffness = \"1e10 N/m\"\nrebound_velocity = \"0.01 m/s\"\n",
 )]
@@ -322,26 +323,26 @@ impl Stateful for Runtime {
     }
 
     fn switch(&mut self, _: usize, y: &mut [f64]) {
-        y[1] = self.holding.switch(Hold::nearest(&self.forces.place));
+        y[1] = self.holding.switch(&self.forces.place);
     }
 
     fn free(&mut self) {
-        self.holding.hold = Hold::Free;
+        self.holding.free();
     }
 
     fn start(&mut self, y: &mut [f64]) {
         let nearest = Hold::nearest(&self.forces.place);
         if self.holding.readiness(&self.balance(&self.forces, nearest), self.v, true) > 0.0 {
-            y[1] = self.holding.switch(nearest);
+            y[1] = self.holding.switch(&self.forces.place);
         }
     }
 
     fn save(&self, out: &mut Vec<f64>) {
-        out.push(self.holding.hold.code());
+        out.push(self.holding.code());
     }
 
     fn restore(&mut self, saved: &[f64]) -> usize {
-        self.holding.hold = Hold::from_code(saved[0]);
+        self.holding.restore(saved[0]);
         1
     }
 }
