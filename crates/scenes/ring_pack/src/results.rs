@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::GasWay;
-use gudgeon_core::result::{Event, Value};
+use gudgeon_core::result::{Event, Note, Value};
 use indexmap::IndexMap;
 
 use super::film_strokes;
@@ -35,6 +35,13 @@ pub struct Cycle {
 
 /// More changes of seat than this are told as one flutter: they would bury everything else.
 const FLUTTER: u32 = 24;
+/// Part of the charge from which a loss changes the pressure of the cylinder by more than traces are good for.
+const FELT: f64 = 0.05;
+
+/// Swept volume of a cylinder \[m³\].
+fn swept(pack: &Pack) -> f64 {
+    PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke()
+}
 
 impl Cycle {
     /// Every wanted result.
@@ -67,20 +74,34 @@ impl Cycle {
         pack.period() / pack.omega
     }
 
+    /// Blow-by over the charge: the swept volume at the end of the first stroke, at the temperature of the meter.
+    fn blow_by_share(&self, pack: &Pack, meter: Meter) -> f64 {
+        self.totals.blow_by / (meter.density * pack.cylinder.pressure(PI) / meter.pressure * swept(pack))
+    }
+
+    /// What is said of a blow-by that a cylinder pressure would feel.
+    #[must_use]
+    pub fn lost_charge(&self, pack: &Pack, meter: Meter) -> Option<Note> {
+        let share = self.blow_by_share(pack, meter);
+        (share > FELT).then(|| {
+            let text = format!(
+                "the blow-by is {:.0} % of the charge of a cylinder: its pressure, an input, would be lower",
+                100.0 * share
+            );
+            Note::caution("charge_lost", text).amount("share", share, "1")
+        })
+    }
+
     fn of_pack(&self, pack: &Pack, name: &str, meter: Meter) -> f64 {
         let (t, m) = (&self.totals, &self.measures);
-        let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
+        let swept = swept(pack);
         let work: f64 = t.friction_work.iter().sum();
         let around = around(pack);
         let up = t.oil.thrown + t.oil.evaporated;
         match name {
             "blow_by" => Self::metered(pack, t.blow_by, meter),
             "blow_by_per_cylinder" => Self::metered(pack, t.blow_by, Meter { cylinders: 1.0, ..meter }),
-            "blow_by_share" => {
-                // The swept volume at the end of the first stroke, at the temperature of the meter.
-                let charge = meter.density * pack.cylinder.pressure(PI) / meter.pressure * swept;
-                t.blow_by / charge
-            }
+            "blow_by_share" => self.blow_by_share(pack, meter),
             "blow_by_mass_per_cycle" => t.blow_by,
             "blow_back_mass_per_cycle" => m.up[0],
             "blow_back" => Self::metered(pack, m.up[0], meter),

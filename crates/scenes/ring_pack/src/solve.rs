@@ -188,7 +188,10 @@ fn report(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)], branches:
             }
         }
     }
-    report.notes.extend(found.first().and_then(|(_, f)| evaporation::note(&f.cycle.totals)));
+    if let Some((_, first)) = found.first() {
+        report.notes.extend(evaporation::note(&first.cycle.totals));
+        report.notes.extend(first.cycle.lost_charge(pack, meter(case)));
+    }
     report.counters.insert("cycles".into(), found.iter().map(|(_, f)| f.cycles).sum::<f64>().ceil() as u64);
     report.counters.insert("states".into(), pack.layout.n as u64);
     report.counters.insert("film_evaluations".into(), pack.counters.film);
