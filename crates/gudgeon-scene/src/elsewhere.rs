@@ -69,9 +69,10 @@ pub(crate) fn look_elsewhere(
     Ok(())
 }
 
-/// The first of the results that lead by which two states, whose results are `a` and `b`, are not one. What is known of the `uncertainty` of `a` is taken into account.
+/// The first result by which two states, whose results are `a` and `b`, are not one: of those that lead, or of all where none of these is told. What is known of the
+/// `uncertainty` of `a` is taken into account.
 pub fn another<'a>(
-    a: &IndexMap<String, Value>,
+    a: &'a IndexMap<String, Value>,
     b: &IndexMap<String, Value>,
     leading: &'a [Headline],
     uncertainty: &IndexMap<String, f64>,
@@ -82,7 +83,9 @@ pub fn another<'a>(
         let scale = size(a, &x.unit).max(x.value.abs()).max(y.value.abs());
         change(x.value, y.value, &x.unit).abs() > (SAME * scale).max(WITHIN * known).max(NOTHING)
     };
-    leading.iter().flat_map(|h| &h.results).map(|(_, name)| name.as_str()).find(differs)
+    let names = leading.iter().flat_map(|h| &h.results).map(|(_, name)| name.as_str());
+    let told: Vec<&str> = names.filter(|name| a.contains_key(*name)).collect();
+    if told.is_empty() { a.keys().map(String::as_str).find(differs) } else { told.into_iter().find(differs) }
 }
 
 /// A tenth of the largest of the results in a unit: what is small beside that makes no other state.
@@ -131,4 +134,44 @@ fn unsettled(theirs: &Branch) -> Note {
         theirs.start
     );
     Note::caution("start_unsettled", text).of_numerics()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn results(all: &[(&str, f64)]) -> IndexMap<String, Value> {
+        let value = |v: f64| Value { value: v, unit: "l/min".into(), what: String::new() };
+        all.iter().map(|(name, v)| ((*name).to_owned(), value(*v))).collect()
+    }
+
+    #[test]
+    fn states_differ_in_results_that_lead() {
+        let lead = [Headline::one("Blow-by", "blow_by")];
+        let none = IndexMap::new();
+        let a = results(&[("blow_by", 60.0), ("noise", 1.0)]);
+        let b = results(&[("blow_by", 60.5), ("noise", 2.0)]);
+        assert_eq!(another(&a, &b, &lead, &none), None);
+        let c = results(&[("blow_by", 61.0), ("noise", 1.0)]);
+        assert_eq!(another(&a, &c, &lead, &none), Some("blow_by"));
+        // What is not known better than that tells nothing.
+        let doubt = IndexMap::from([("blow_by".to_owned(), 0.3)]);
+        assert_eq!(another(&a, &c, &lead, &doubt), None);
+    }
+
+    #[test]
+    fn without_results_that_lead_all_are_compared_and_what_is_small_is_not() {
+        let none = IndexMap::new();
+        let a = results(&[("gap", 60.0), ("groove", 0.04), ("left_over", 1e-15)]);
+        // A tenth of the largest counts: 0.06 is admitted.
+        let b = results(&[("gap", 60.0), ("groove", 0.09), ("left_over", -3e-15)]);
+        assert_eq!(another(&a, &b, &[], &none), None);
+        let c = results(&[("gap", 60.0), ("groove", 0.11), ("left_over", 1e-15)]);
+        assert_eq!(another(&a, &c, &[], &none), Some("groove"));
+    }
+
+    #[test]
+    fn values_have_four_digits() {
+        assert_eq!([62.3037, 1375.88, 0.00123456, 0.0].map(four), ["62.30", "1376", "0.001235", "0.000"]);
+    }
 }
