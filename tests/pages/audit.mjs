@@ -68,17 +68,23 @@ async function audit(page, say, options, context = "html") {
 async function contrast(page, say) {
   await page.evaluate((attribute) => {
     const seen = new Set();
+    const figures = [...document.querySelectorAll("svg")];
+    // What lies behind an element: that of its parent, and its own.
+    const behind = new Map([[null, ""]]);
+    const ground = (e) => {
+      if (!behind.has(e)) {
+        const { backgroundColor, backgroundImage, opacity } = getComputedStyle(e);
+        behind.set(e, [ground(e.parentElement), backgroundColor, backgroundImage, opacity].join());
+      }
+      return behind.get(e);
+    };
     for (const e of document.body.querySelectorAll("*")) {
       e.removeAttribute(attribute);
       if (![...e.childNodes].some((n) => n.nodeType === Node.TEXT_NODE && n.data.trim())) continue;
       const { color, fill, fontSize, fontWeight } = getComputedStyle(e);
-      const parts = [color, fontSize, fontWeight];
-      for (let up = e; up; up = up.parentElement) {
-        const { backgroundColor, backgroundImage, opacity } = getComputedStyle(up);
-        parts.push(backgroundColor, backgroundImage, opacity);
-      }
+      const parts = [color, fontSize, fontWeight, ground(e)];
       const figure = e.closest("svg");
-      if (figure) parts.push(fill, e.getAttribute("class"), [...document.querySelectorAll("svg")].indexOf(figure));
+      if (figure) parts.push(fill, e.getAttribute("class"), figures.indexOf(figure));
       const key = parts.join();
       if (!seen.has(key)) e.setAttribute(attribute, "");
       seen.add(key);
