@@ -46,17 +46,18 @@ pub(super) fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
 
 /// Pressure of all lands \[Pa\] at a second start, that between the rings of an engine at load.
 const ELSEWHERE: f64 = 6e5;
-/// Starts whose pressures differ by less than this factor count as one.
+/// Starts whose pressures differ by less than this factor count as one; the second is then lower by the other factor.
 const APART: f64 = 2.0;
+const LOWER: f64 = 6.0;
 
 /// The second start of a case that has one.
 pub(super) fn elsewhere(case: &RingPackCase, pack: &Pack) -> Option<Elsewhere> {
     let &[own] = &starts(case, pack)[..] else { return None };
     let near = (own / ELSEWHERE).max(ELSEWHERE / own) < APART;
-    let other = if near { pack.p_crankcase } else { ELSEWHERE };
+    let other = if near { own / LOWER } else { ELSEWHERE };
     Some(Elsewhere {
         starts: [own, other].map(named),
-        set: vec![format!("solver.starts=[\"{:.6e} Pa\"]", other)],
+        set: vec![format!("solver.starts=[\"{other:.6e} Pa\"]")],
     })
 }
 
