@@ -312,7 +312,7 @@ impl Holding {
         }
         if self.has_entered(b.place) {
             let release = PUSHED / b.groove.flank.per_rebound;
-            return 1.0 - b.velocity(release) / release;
+            return (1.0 - b.velocity(release) / release).max(-1.0);
         }
         let w = b.away * v;
         let rate = b.stiffness(w) / (self.mass * self.omega);
