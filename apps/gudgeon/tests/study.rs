@@ -350,3 +350,23 @@ fn a_folder_keeps_its_study() {
     fs::write(&record, text).expect("written");
     assert!(!gudgeon(&["study", "run", &study]).status.success());
 }
+
+#[test]
+fn a_file_of_the_other_kind_is_named() {
+    let dir = folder("kinds");
+    let study = study_file(&dir, GRID);
+    let case = root().join("cases/rigs/slider-barrel.toml").display().to_string();
+    let out = dir.join("out").display().to_string();
+    for (args, says) in [
+        (vec!["run", &study], "this is the file of a study, not a case"),
+        (vec!["study", "new", &out, &case], "this is a case, not the file of a study"),
+        (vec!["study", "run", &study], "is a file, not the folder of a study"),
+    ] {
+        let o = gudgeon(&args);
+        let told = String::from_utf8_lossy(&o.stderr);
+        assert_eq!(o.status.code(), Some(2), "{args:?}: {told}");
+        // One mistake, not one for every key that the other kind does not have.
+        assert!(told.contains(says) && told.matches('×').count() == 1, "{args:?}: {told}");
+    }
+    assert!(!Path::new(&out).exists());
+}

@@ -145,6 +145,15 @@ impl Document {
         }
     }
 
+    /// Where a key or table at its top stands.
+    #[must_use]
+    pub fn place(&self, key: &str) -> Option<Range<usize>> {
+        match self.0.as_ref().map(|(root, _)| &root.data) {
+            Ok(Data::Table(all)) => all.iter().find(|e| e.key == key)?.key_place.span.clone(),
+            _ => None,
+        }
+    }
+
     /// The keys and tables at its top.
     #[must_use]
     pub fn keys(&self) -> Vec<&str> {

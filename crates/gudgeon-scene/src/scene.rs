@@ -5,11 +5,12 @@
 
 use std::any::Any;
 use std::borrow::Cow;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use gudgeon_case::catalogue::resolve;
 use gudgeon_case::{
-    Document, Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_document, nearest,
+    Diagnostic, Document, Help, Input, Loaded, Origin, Refinement, Report, Source, UsedSet, load_document,
+    nearest,
 };
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{GradientInput, Gradients, ModelUse, Note, RunResult, Value};
@@ -522,11 +523,16 @@ impl JsonSchema for SceneName {
 /// Every mistake of the text and of the overrides.
 pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
     let document = Document::of(&source.text);
+    if let (None, Some(place)) = (document.scene(overrides), document.place("cases")) {
+        let d = Diagnostic::new("this is the file of a study, not a case").at(Origin::File, Some(place));
+        let d = d.help(format!("`gudgeon study new DIR {}` makes a study of it", source.name));
+        return Err(Report::new(vec![d], Arc::new(source), Arc::from(overrides)));
+    }
     match scene_for(&document, overrides) {
         Some(s) => (s.read)(source, document, overrides),
         None => {
             let what = "no scene is linked into this program";
-            Err(Report::unreadable(&source.name, gudgeon_case::Diagnostic::new(what)))
+            Err(Report::unreadable(&source.name, Diagnostic::new(what)))
         }
     }
 }

@@ -4,9 +4,9 @@ use std::collections::hash_map::RandomState;
 use std::fs;
 use std::hash::{BuildHasher, Hasher};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use gudgeon_case::{Loaded, load};
+use gudgeon_case::{Diagnostic, Document, Loaded, Origin, Report, load_document, read};
 use gudgeon_scene::many::run_many;
 use gudgeon_scene::{Checked, Progress, Stopped};
 use serde::Serialize;
@@ -88,7 +88,14 @@ impl Study {
     /// # Errors
     /// A study file that is wrong; a folder that holds another study.
     pub fn create(dir: &Path, file: &Path) -> Result<Self, FolderError> {
-        let loaded: Loaded<StudyFile> = load(file, &[])?;
+        let source = read(file)?;
+        let document = Document::of(&source.text);
+        if let (Some(place), None) = (document.place("scene"), document.place("cases")) {
+            let d = Diagnostic::new("this is a case, not the file of a study").at(Origin::File, Some(place));
+            let d = d.help("a study file names it in `cases` and says in `inputs` what is varied");
+            return Err(Report::new(vec![d], Arc::new(source), Arc::from([])).into());
+        }
+        let loaded: Loaded<StudyFile> = load_document(source, document, &[])?;
         Self::keep(dir, super::prepare::prepare(&loaded)?)
     }
 
@@ -125,6 +132,13 @@ impl Study {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 let what =
                     format!("`{}` holds no study: `gudgeon study new {0} FILE` makes one", dir.display());
+                return Err(FolderError::Folder(what));
+            }
+            Err(_) if dir.is_file() => {
+                let what = format!(
+                    "`{}` is a file, not the folder of a study: `gudgeon study new DIR {0}` makes one of a study file",
+                    dir.display()
+                );
                 return Err(FolderError::Folder(what));
             }
             Err(e) => return Err(FolderError::io("read", path)(e)),

@@ -444,6 +444,8 @@ const MAX_STEPS: u64 = 100_000;
 const MAX_STEP: f64 = 20.0;
 /// Cycles until a periodic state must be found.
 const CYCLES: usize = 60;
+/// How many times the search of a periodic state may tighten the tolerance tenfold: cycles differ by the noise of their steps where gas passes an opening whose flow has a corner.
+const REFINEMENTS: usize = 2;
 
 /// Where rows of a run are wanted.
 struct Plan {
@@ -521,7 +523,7 @@ impl March<'_> {
             tolerance: self.tolerance,
             accuracy: self.tolerance,
             max_cycles: CYCLES,
-            refinements: 0,
+            refinements: REFINEMENTS,
             accelerate: true,
         };
         let report = periodic_orbit(self, y, &options)?;
@@ -542,7 +544,7 @@ impl CycleMap for March<'_> {
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         y1.copy_from_slice(y0);
-        self.integrate(y1, accuracy.max(self.tolerance))?;
+        self.integrate(y1, accuracy.max(TOLERANCES.0))?;
         Ok(1.0)
     }
     fn scale(&self, _: &[f64], s: &mut [f64]) {
