@@ -3,9 +3,37 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::elementary;
 
-/// Relative pressure drop below which the derivative of a square root is held at its value there, 1e4: the bare law has an infinite
-/// one at equal pressures, and a Jacobian must be finite.
+/// Relative pressure drop below which a root is none any more, where nothing else is said ([`LeastDrop`]).
 pub const MIN_DROP: f64 = 1e-8;
+
+/// The relative pressure drop `δ` below which a law that goes with the root of the drop goes over to a parabola.
+///
+/// ```text
+/// u / sqrt(w)  ->  u / sqrt(δ) (3 - w/δ) / 2        w = u + ε < δ
+/// ```
+///
+/// Value and derivative meet at `w = δ`. A root has an infinite derivative at equal pressures: beside these there are states where an implicit step ends where it began, the other flank of
+/// the root included, and steps as short as the first of them go on for ever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeastDrop {
+    least: f64,
+    /// `1/(2 δ)`.
+    half: f64,
+}
+
+impl LeastDrop {
+    /// For the drop `δ`, not below [`MIN_DROP`].
+    pub const fn new(least: f64) -> Self {
+        let least = least.max(MIN_DROP);
+        Self { least, half: 0.5 / least }
+    }
+
+    /// What stands for `w` under the root, and the factor that makes it the parabola; 1 above `δ`.
+    #[inline]
+    pub fn root(self, w: f64) -> (f64, f64) {
+        (w.max(self.least), (1.5 - self.half * w).max(1.0))
+    }
+}
 
 /// Number of coefficients of the polynomial in [`FlowFunction`].
 const COEFFICIENTS: usize = 10;
@@ -29,6 +57,7 @@ pub struct FlowFunction {
     q: [f64; COEFFICIENTS],
     /// Coefficients of `dQ/du`.
     dq: [f64; COEFFICIENTS],
+    near: LeastDrop,
 }
 
 impl FlowFunction {
@@ -54,7 +83,14 @@ impl FlowFunction {
         let scale = 2.0 / u_crit;
         let q = chebyshev_to_powers(&nodes, &values);
         let dq = std::array::from_fn(|i| q.get(i + 1).map_or(0.0, |c| (i + 1) as f64 * c * scale));
-        Ok(Self { gamma, u_crit, scale, q, dq })
+        Ok(Self { gamma, u_crit, scale, q, dq, near: LeastDrop::new(MIN_DROP) })
+    }
+
+    /// The same, with the laminar branch a parabola below the relative pressure drop `least`, [`MIN_DROP`] or more.
+    #[must_use]
+    pub const fn with_least_drop(mut self, least: f64) -> Self {
+        self.near = LeastDrop::new(least);
+        self
     }
 
     /// Ratio of specific heats `γ`.
@@ -100,15 +136,17 @@ impl FlowFunction {
         (root * q, slope)
     }
 
-    /// `ψ_ε = ψ sqrt(u / (u + ε))`: proportional to `u` where `u << ε`. `ε > 0`.
+    /// `ψ_ε = ψ sqrt(u / (u + ε))`: proportional to `u` where `u << ε`, and a parabola where `u + ε` is below [`MIN_DROP`] or what
+    /// [`with_least_drop`](Self::with_least_drop) says. `ε >= 0`.
     #[inline]
     #[must_use]
     pub fn psi_laminar(&self, u: f64, eps: f64) -> f64 {
         let uc = u.min(self.u_crit);
-        (uc * (u / (u + eps))).sqrt() * self.q(uc)
+        let (w, parabola) = self.near.root(u + eps);
+        (uc * (u / w)).sqrt() * self.q(uc) * parabola
     }
 
-    /// `ψ_ε` and `dψ_ε/du`; for an `ε` below [`MIN_DROP`] the derivative is limited to that at `u` = [`MIN_DROP`].
+    /// `ψ_ε` and `dψ_ε/du`.
     ///
     /// ```text
     /// ψ_ε = u Q / sqrt(u + ε)            dψ_ε/du = [ Q + u Q' - u Q / (2 (u + ε)) ] / sqrt(u + ε)       subsonic
@@ -119,14 +157,21 @@ impl FlowFunction {
     pub fn psi_laminar_derivative(&self, u: f64, eps: f64) -> (f64, f64) {
         let uc = u.min(self.u_crit);
         let q = self.q(uc);
-        let psi = (uc * (u / (u + eps))).sqrt() * q;
+        let (w, parabola) = self.near.root(u + eps);
+        let psi = (uc * (u / w)).sqrt() * q * parabola;
         let slope = if u < self.u_crit {
-            let inverse = 1.0 / (u + eps).max(MIN_DROP);
-            inverse.sqrt() * (q + u * (self.dq(u) - 0.5 * q * inverse))
+            let (dq, inverse) = (self.dq(u), 1.0 / w);
+            inverse.sqrt() * (q + u * (dq - 0.5 * q * inverse) + (parabola - 1.0) * (q + u * dq))
         } else {
-            0.5 * psi * eps / (u * (u + eps))
+            0.5 * psi * eps / (u * w)
         };
         (psi, slope)
+    }
+
+    /// What the laminar branch makes of `ψ`, as a factor: `sqrt(u / (u + ε))`.
+    pub(crate) fn branch(&self, u: f64, eps: f64) -> f64 {
+        let (w, parabola) = self.near.root(u + eps);
+        (u / w).sqrt() * parabola
     }
 
     /// `ψ` by logarithms and exponentials: slow, exact to a few units in the last place.

@@ -47,15 +47,14 @@ pub struct OrificeLaw {
     discharge: f64,
     /// `κ`: the share of it that is lost at equal pressures.
     fall: f64,
-    /// `ε` of the laminar branch, above zero.
+    /// `ε` of the laminar branch.
     laminar: f64,
     /// Whether the truncated form stands in for the isentropic one.
     truncated: bool,
 }
 
 impl OrificeLaw {
-    /// The discharge coefficient at the pressure ratio `r` is `discharge (1 - fall r²)`; `laminar` is `ε`, values below the smallest number stand for
-    /// zero.
+    /// The discharge coefficient at the pressure ratio `r` is `discharge (1 - fall r²)`; `laminar` is `ε`.
     pub(crate) const fn new(
         flow_function: FlowFunction,
         discharge: f64,
@@ -63,8 +62,14 @@ impl OrificeLaw {
         laminar: f64,
         truncated: bool,
     ) -> Self {
-        // Zero over zero must not arise where the pressures are equal; beside any other pressure difference this vanishes.
-        Self { flow_function, discharge, fall, laminar: laminar.max(f64::MIN_POSITIVE), truncated }
+        Self { flow_function, discharge, fall, laminar, truncated }
+    }
+
+    /// The same, with a parabola in place of the root below the relative pressure drop `least`, [`MIN_DROP`] or more: some ten times what an integration cannot tell from nothing.
+    #[must_use]
+    pub const fn with_least_drop(mut self, least: f64) -> Self {
+        self.flow_function = self.flow_function.with_least_drop(least);
+        self
     }
 
     /// Flow \[kg/s\] from `a` to `b` through the geometric area \[m²\]. Pressures must not be negative.
@@ -84,14 +89,13 @@ impl OrificeLaw {
     /// The same as [`flow`](Self::flow), by logarithms and exponentials.
     #[must_use]
     pub fn flow_exact(&self, area: f64, a: &GasState, b: &GasState) -> f64 {
-        self.directed(area, a, b, |law, u| law.psi_exact(u) * (u / (u + self.laminar)).sqrt())
+        self.directed(area, a, b, |law, u| law.psi_exact(u) * law.branch(u, self.laminar))
     }
 
     /// [`flow`](Self::flow) with its partial derivatives by both pressures, one-sided where the law has a kink (at equal pressures
     /// between sides of different temperature).
     ///
-    /// Where the derivative of the law is infinite, at equal pressures without a laminar branch, that at `u` = [`MIN_DROP`] stands
-    /// for it.
+    /// Without a laminar branch the truncated form has an infinite derivative at equal pressures: that at `u` = [`MIN_DROP`] stands for it.
     #[inline]
     #[must_use]
     pub fn flow_partials(&self, area: f64, a: &GasState, b: &GasState) -> FlowPartials {

@@ -1,7 +1,7 @@
 //! Martin's law of one throttling of a labyrinth.
 
 use crate::directed::{directed, directed_partials};
-use crate::flow_function::MIN_DROP;
+use crate::flow_function::{LeastDrop, MIN_DROP};
 use crate::passage_law::{Area, FlowPartials, GasState, PassageLaw};
 use gudgeon_core::elementary;
 
@@ -22,20 +22,21 @@ pub const THROTTLING_RATIO: f64 = 0.471_130_219_857_598_4;
 /// ```
 ///
 /// Below `r_c` the flow of a throttling would fall again; it is choked there, `φ` = 0.6663. Near equal pressures `φ` is multiplied with
-/// `sqrt(u/(u + ε))`, `u = 1 - r`, which makes it proportional to the pressure difference.
+/// `sqrt(u/(u + ε))`, `u = 1 - r`, which makes it proportional to the pressure difference; where `u + ε` is below [`MIN_DROP`](crate::MIN_DROP) it is a parabola.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrottlingLaw {
     discharge: f64,
-    /// `ε`, above zero.
+    /// `ε`.
     laminar: f64,
 }
+
+const NEAR: LeastDrop = LeastDrop::new(MIN_DROP);
 
 impl ThrottlingLaw {
     /// With the discharge coefficient `C_d`, and `ε` of the laminar branch, 0 for none.
     #[must_use]
     pub const fn new(discharge: f64, laminar: f64) -> Self {
-        // Zero over zero must not arise where the pressures are equal.
-        Self { discharge, laminar: laminar.max(f64::MIN_POSITIVE) }
+        Self { discharge, laminar }
     }
 
     /// `φ²/u` at the drop `u`, which is smooth through 0, and its derivative by `u`.
@@ -50,20 +51,22 @@ impl ThrottlingLaw {
     #[inline]
     fn phi(&self, u: f64) -> f64 {
         let within = u.min(1.0 - THROTTLING_RATIO);
-        (Self::quotient(within).0 * within * (u / (u + self.laminar))).sqrt()
+        let (w, parabola) = NEAR.root(u + self.laminar);
+        (Self::quotient(within).0 * within * (u / w)).sqrt() * parabola
     }
 
-    /// The same and its derivative by `u`, limited to that at `u` = [`MIN_DROP`] where there is no laminar branch.
+    /// The same and its derivative by `u`.
     #[inline]
     fn phi_derivative(&self, u: f64) -> (f64, f64) {
         let phi = self.phi(u);
-        let sum = u + self.laminar;
+        let (w, parabola) = NEAR.root(u + self.laminar);
         if u >= 1.0 - THROTTLING_RATIO {
-            return (phi, 0.5 * phi * self.laminar / (u * sum));
+            return (phi, 0.5 * phi * self.laminar / (u * w));
         }
         let (q, by_u) = Self::quotient(u);
-        let inverse = 1.0 / sum.max(MIN_DROP);
-        (phi, (q * inverse).sqrt() * (1.0 + 0.5 * u * (by_u / q - inverse)))
+        let (inverse, by_q) = (1.0 / w, 0.5 * u * by_u / q);
+        let root = 1.0 + by_q - 0.5 * u * inverse;
+        (phi, (q * inverse).sqrt() * (root + (parabola - 1.0) * (1.0 + by_q)))
     }
 }
 
