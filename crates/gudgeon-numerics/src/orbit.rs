@@ -6,12 +6,13 @@
 //! taken from the differences of the iterates. A fixed point with |λ| > 1 is not what the machine does: when the multiplier
 //! comes near, plain repetition decides, and a cycle that repeats only every second or third time is reported as such.
 //!
-//! A map that is strongly bent, or has corners, is searched in stretches of plain cycles instead (`stretches`).
+//! A map of few states on which that does not get on is searched by its slope (`newton`). One that is strongly bent, or has corners, is searched in stretches of plain cycles instead (`stretches`).
 
 use crate::EvalError;
 use crate::elementary;
 use nalgebra::{DMatrix, DVector, SVD, Schur};
 
+mod newton;
 mod points;
 mod stretches;
 
@@ -221,6 +222,9 @@ pub fn periodic_orbit(
         options.accuracy *= 0.1;
         search.extrapolated(map, y, &options, 1)?;
     }
+    if !search.doubled && !search.report.converged && newton::serves(map, search.report.cycles, &options) {
+        search.by_newton(map, y, &options)?;
+    }
     let options = &options;
     if !search.doubled
         && !search.report.converged
@@ -333,8 +337,8 @@ impl Search {
             // Stretches are plain cycles for the most part, and need no others after them.
             Some(bend) => self.in_stretches(map, y, options, (times, options.max_cycles), bend),
             None => {
-                let limit =
-                    if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+                let most = if newton::is_small(map) { newton::BEFORE } else { patience(options) };
+                let limit = if times == 1 { options.max_cycles.min(most) } else { options.max_cycles };
                 self.accelerated(map, y, options, (times, limit))
             }
         }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
 use super::equations::Work;
-use super::solver::{Cycled, PistonSolver, PistonSolverSpec, mesh};
+use super::solver::{Accuracy, Cycled, PistonSolver, PistonSolverSpec, mesh};
 use super::trajectory::{Between, Trajectory};
 
 /// Equal steps of crank angle, cycle after cycle: the simplest scheme that stands the stiffness of the films.
@@ -126,7 +126,7 @@ impl PistonSolver for EqualSteps {
         &mut self,
         of: &mut Cycled<'_>,
         y: &mut [f64],
-        _: f64,
+        _: Accuracy,
         trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         Euler::new(of.a, of.work, of.stats, y)?.cycle(self.steps, trajectory, y)

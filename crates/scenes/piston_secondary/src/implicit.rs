@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
 use super::equations::{Equations, Work};
-use super::solver::{Cycled, PistonSolver, PistonSolverSpec, check_tolerance, mesh};
+use super::solver::{Accuracy, Cycled, PistonSolver, PistonSolverSpec, check_tolerance, mesh};
 use super::stages::Staged;
 use super::trajectory::{Between, Trajectory};
 
@@ -173,12 +173,12 @@ impl PistonSolver for Adaptive {
         &mut self,
         of: &mut Cycled<'_>,
         y: &mut [f64],
-        accuracy: f64,
+        accuracy: Accuracy,
         mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         let layout = &of.a.layout;
         let scale: Vec<f64> = layout.states.iter().map(|s| s.scale).collect();
-        let mut options = Options::new(accuracy.max(self.tolerance), &scale);
+        let mut options = Options::new(accuracy.tolerance(self.tolerance), &scale);
         options.absolute = layout.states.iter().map(|s| !s.relative).collect();
         (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MAX_STEPS);
         options.event_samples = 0;

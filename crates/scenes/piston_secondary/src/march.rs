@@ -9,7 +9,7 @@ use gudgeon_numerics::orbit::{Change, CycleMap, OrbitOptions, OrbitReport, perio
 use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::equations::Work;
-use super::solver::{Cycled, PistonSolver};
+use super::solver::{Accuracy, Cycled, PistonSolver};
 use super::trajectory::Trajectory;
 use gudgeon_scene::{RunError, Stopped};
 
@@ -38,6 +38,8 @@ struct Cycle<'a> {
     solver: Box<dyn PistonSolver>,
     work: Work,
     repeatable_to: f64,
+    /// What the search asks for before it asks for more.
+    asked: f64,
     max_cycles: usize,
     stats: Stats,
     y: Vec<f64>,
@@ -51,11 +53,11 @@ struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
-    /// One cycle from `y`, into `trajectory`, to the accuracy of the solver or a coarser one.
+    /// One cycle from `y`, into `trajectory`, to the accuracy of the solver or another.
     fn integrate(
         &mut self,
         y: &mut [f64],
-        accuracy: f64,
+        accuracy: Accuracy,
         mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         self.work.w.fill(0.0);
@@ -109,7 +111,8 @@ impl CycleMap for Cycle<'_> {
         let mut y = std::mem::take(&mut self.y);
         let keeps = accuracy <= self.repeatable_to && self.a.oil.is_none();
         let mut last = keeps.then(|| self.solver.trajectory(self.a, &self.work));
-        let outcome = self.integrate(&mut y, accuracy, last.as_mut());
+        let wanted = Accuracy { error: accuracy, part: (accuracy / self.asked).min(1.0) };
+        let outcome = self.integrate(&mut y, wanted, last.as_mut());
         self.last = last;
         self.periodic(&y, y1);
         self.y = y;
@@ -135,6 +138,9 @@ impl CycleMap for Cycle<'_> {
         s[self.a.layout.periodic.len()..].fill(NODE_SCALE);
     }
 }
+
+/// How many times the search may ask for a tenth of the error of a cycle: a slow mode gathers the noise of many.
+const REFINEMENTS: usize = 2;
 
 /// Film of one node that counts as one, in its unit: which nodes a step fills differs from cycle to cycle, and forces come from many of them.
 const NODE_SCALE: f64 = 1000.0;
@@ -185,7 +191,7 @@ pub fn run(
     let mut last = None;
     if s.cycles > 0 {
         for _ in 1..s.cycles {
-            cycle.integrate(&mut y, 0.0, None)?;
+            cycle.integrate(&mut y, Accuracy::OWN, None)?;
         }
         (cycles, error) = (f64::from(s.cycles), None);
     } else {
@@ -193,7 +199,7 @@ pub fn run(
         let wanted = s.periodicity.si();
         let wanted = if purpose == Purpose::Results { wanted } else { wanted.max(START) };
         let report = cycle.close(&mut y, wanted)?;
-        notes.extend(told(&report, wanted));
+        notes.extend(told(&report, wanted, s.max_cycles as usize));
         (cycles, error) = (report.cycle_equivalents, Some(report.error_estimate));
         last = cycle.reusable(&y, &report, wanted);
         if last.is_some() && purpose != Purpose::Start {
@@ -206,7 +212,7 @@ pub fn run(
     let known = last.is_some();
     let mut trajectory = last.unwrap_or_else(|| cycle.solver.trajectory(cycle.a, &cycle.work));
     if purpose != Purpose::Start && !known {
-        cycle.integrate(&mut y, 0.0, Some(&mut trajectory))?;
+        cycle.integrate(&mut y, Accuracy::OWN, Some(&mut trajectory))?;
     }
     // Of a given number of cycles the last one is that of the record.
     let seconds = if s.cycles > 0 { begin.seconds() } else { searched };
@@ -240,6 +246,7 @@ impl<'a> Cycle<'a> {
             solver,
             work,
             repeatable_to: s.method.repeatable_to(),
+            asked: s.method.repeatable_to(),
             max_cycles: s.max_cycles as usize,
             stats: Stats::default(),
             y: vec![0.0; states],
@@ -279,11 +286,12 @@ impl<'a> Cycle<'a> {
 
     /// Searches the periodic motion from `y`, until a cycle ends within `wanted` clearances of where it began.
     fn close(&mut self, y: &mut [f64], wanted: f64) -> Result<OrbitReport, RunError> {
+        self.asked = self.repeatable_to.min(0.3 * wanted);
         let options = OrbitOptions {
             tolerance: wanted,
-            accuracy: self.repeatable_to.min(0.3 * wanted),
+            accuracy: self.asked,
             max_cycles: self.max_cycles,
-            refinements: 0,
+            refinements: REFINEMENTS,
             accelerate: true,
         };
         let mut z = vec![0.0; self.dim()];
@@ -301,10 +309,10 @@ impl<'a> Cycle<'a> {
 }
 
 /// What the search of the periodic motion found, for a person.
-fn told(report: &OrbitReport, wanted: f64) -> Vec<Note> {
+fn told(report: &OrbitReport, wanted: f64, most: usize) -> Vec<Note> {
     let mut notes = Vec::new();
     if !report.converged {
-        notes.push(not_periodic(report.cycles, report.error_estimate, wanted));
+        notes.push(not_periodic((report.cycles, most), report.error_estimate, wanted));
     }
     if report.multiplier > 0.9 {
         notes.push(Note::info(
@@ -323,16 +331,24 @@ fn told(report: &OrbitReport, wanted: f64) -> Vec<Note> {
 }
 
 /// What a motion that is not periodic says: a caution up to ten times the distance that is admitted, a failure beyond.
-fn not_periodic(cycles: usize, error: f64, wanted: f64) -> Note {
+/// `cycles` are those that were searched, and the most.
+fn not_periodic((cycles, most): (usize, usize), error: f64, wanted: f64) -> Note {
     let topic = "not_periodic";
+    let advice = if cycles + EARLY < most {
+        "The errors of the steps leave no less: tighten `solver.tolerance`"
+    } else {
+        "Raise `solver.max_cycles`, tighten `solver.tolerance`"
+    };
     let text = format!(
-        "The motion is not periodic within {wanted:.0e} clearances after {cycles} cycles: the estimated distance is {error:.1e}. Raise `solver.max_cycles`, or look at the transient with `solver.cycles`."
+        "The motion is not periodic within {wanted:.0e} clearances after {cycles} cycles: the estimated distance is {error:.1e}. {advice}, or look at the transient with `solver.cycles`."
     );
     let note =
         if error <= ADMITTED * wanted { Note::caution(topic, text) } else { Note::failure(topic, text) };
     note.amount("periodicity_error", error, "1").amount("wanted", wanted, "1")
 }
 
+/// Cycles before the most that may be, from which on a search that ended did so for another reason: a slope is not begun without all of its cycles.
+const EARLY: usize = 6;
 /// Multiple of the distance wanted up to which a motion counts as periodic, with a caution.
 const ADMITTED: f64 = 10.0;
 
@@ -399,6 +415,6 @@ fn still_oil(
         }
     };
     trajectory.oil = a.take_oil_cycle();
-    let late = (change > wanted && !given).then(|| not_periodic(cycles as usize, change, wanted));
+    let late = (change > wanted && !given).then(|| not_periodic((cycles as usize, 0), change, wanted));
     Ok((cycles, late.into_iter().collect()))
 }

@@ -38,10 +38,29 @@ pub trait PistonSolverSpec: Debug + DynClone + Send + Sync {
     fn settings(&self, own: Option<[u32; 2]>) -> Vec<MethodSetting>;
 }
 
+/// How accurate a search wants a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Error of a step that it admits, in clearances; where the solver's own is larger, that stands.
+    pub error: f64,
+    /// The part of the solver's own error that is asked for, below 1 where the noise of its steps is too much.
+    pub part: f64,
+}
+
+impl Accuracy {
+    /// That of the solver.
+    pub const OWN: Self = Self { error: 0.0, part: 1.0 };
+
+    /// The tolerance of a solver whose own it is.
+    #[must_use]
+    pub const fn tolerance(self, own: f64) -> f64 {
+        if self.part < 1.0 { own * self.part } else { own.max(self.error) }
+    }
+}
+
 /// A solver of one piston, its work arrays allocated.
 pub trait PistonSolver {
-    /// One cycle from the states `y`, into `trajectory` where one is wanted; `y` are the states at its end. Where a search asks for less,
-    /// `accuracy` (in clearances) is coarser than the solver's own.
+    /// One cycle from the states `y`, into `trajectory` where one is wanted; `y` are the states at its end.
     ///
     /// # Errors
     /// A step that cannot be taken.
@@ -49,7 +68,7 @@ pub trait PistonSolver {
         &mut self,
         of: &mut Cycled<'_>,
         y: &mut [f64],
-        accuracy: f64,
+        accuracy: Accuracy,
         trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError>;
 

@@ -12,7 +12,7 @@ use gudgeon_scene::RunError;
 use super::assembly::Assembly;
 use super::equations::{LEAST_GAP, Work};
 use super::implicit::{FIRST_STEP, LARGEST_STEP, MAX_STEPS};
-use super::solver::{Cycled, PistonSolver};
+use super::solver::{Accuracy, Cycled, PistonSolver};
 use super::trajectory::{Between, Trajectory};
 use formula::{ESDIRK3, Formula};
 use passed::Passed;
@@ -246,7 +246,7 @@ impl PistonSolver for Staged {
         &mut self,
         of: &mut Cycled<'_>,
         y: &mut [f64],
-        accuracy: f64,
+        accuracy: Accuracy,
         mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         if let Some(t) = trajectory.as_deref_mut() {
@@ -260,7 +260,7 @@ impl PistonSolver for Staged {
         let mut from = 0.0;
         for end in ends {
             if end > from {
-                self.stretch(of, (from, end), accuracy.max(self.tolerance), trajectory.as_deref_mut())?;
+                self.stretch(of, (from, end), accuracy.tolerance(self.tolerance), trajectory.as_deref_mut())?;
                 from = end;
             }
         }
