@@ -161,6 +161,23 @@ fn a_motion_that_is_not_periodic_is_told_and_marked() {
     assert!(note.amounts["periodicity_error"].value > 1e-5 && value(&r, "friction_work") > 0.0);
 }
 
+/// With twice the oil's viscosity and more, the piston with a pin offset of 0.2 mm loses the motion that it has with thin oil: a cycle then moves it by a thousandth of the clearance, and 200 plain
+/// cycles end as far from the motion that is left, 0.001 a cycle still. Secants took 60 cycles and ended nowhere.
+#[test]
+fn a_piston_that_creeps_to_its_other_motion_is_followed() {
+    for (viscosity, e_top) in [("31 mPa s", -3.3799), ("32 mPa s", -3.3587), ("34 mPa s", -3.3308)] {
+        let viscosity = format!("models.oil.viscosity={viscosity}");
+        let r = run_case("ea111-1400-offset-0.2", &[&viscosity, "outputs.map_step=90 deg"]);
+        assert!(
+            r.solver.notes.iter().all(|n| n.topic != "not_periodic"),
+            "{viscosity}: {:?}",
+            r.solver.notes
+        );
+        // Of runs with a hundredth of the tolerance, or 200 cycles; a slow mode gathers ten times the error of a cycle, 1e-3.
+        assert!((value(&r, "e_top_max") - e_top).abs() < 0.01, "{viscosity}: {}", value(&r, "e_top_max"));
+    }
+}
+
 /// Without room both sides rub at once, which no engine survives: the verdict is that of a limit that is not kept. A skirt with its clearance is not told so.
 #[test]
 fn a_jammed_skirt_is_told() {
