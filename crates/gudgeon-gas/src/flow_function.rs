@@ -3,7 +3,7 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::elementary;
 
-/// Relative pressure drop below which a root is none any more, where nothing else is said ([`LeastDrop`]).
+/// Relative pressure drop below which a root of it is none any more, where nothing else is said ([`FlowFunction::with_least_drop`]).
 pub const MIN_DROP: f64 = 1e-8;
 
 /// The relative pressure drop `δ` below which a law that goes with the root of the drop goes over to a parabola.

@@ -29,8 +29,10 @@ const LEARNT: f64 = 10.0;
 /// How much a residual may differ from what was foreseen, over the larger of it and the one before, so that longer steps are tried, and that the step is taken.
 const STRAIGHT: f64 = 0.25;
 const BENT: f64 = 1.0;
-/// How far the shift is above the largest eigenvalue, over that.
+/// How far the shift is above the largest eigenvalue, over that; the smallest that is tried after none, and the largest.
 const ABOVE: f64 = 0.2;
+const SMALLEST: f64 = 1e-3;
+const LARGEST: f64 = 1e6;
 /// Cycles at the noise of the map before a more accurate one is asked for: many are smoother than they say.
 const SMOOTHER: usize = 1;
 /// Steps of one slope, updates included.
@@ -80,18 +82,19 @@ impl Slope {
         (real, multiplier, 1.0 / least.max(1.0 / MAX_GAIN))
     }
 
-    /// The step from the residual `r`, not longer than `reach`, and its shift.
-    fn step(&self, r: &DVector<f64>, reach: f64) -> (DVector<f64>, f64) {
+    /// The step from the residual `r`, not longer than `reach`; as far as a plain cycle goes where no shift makes it that short.
+    fn step(&self, r: &DVector<f64>, reach: f64) -> DVector<f64> {
         let n = r.len();
         let edge = self.spectrum().0.max(0.0);
         let mut shift = (1.0 + ABOVE) * edge;
-        loop {
+        while shift < LARGEST {
             let d = (DMatrix::identity(n, n) * shift - &self.a).lu().solve(r);
-            if let Some(d) = d.filter(|d| d.amax() <= reach || shift > 1e6) {
-                return (d, shift);
+            if let Some(d) = d.filter(|d| d.amax() <= reach) {
+                return d;
             }
-            shift = 2.0 * shift.max(1e-3 + edge);
+            shift = 2.0 * shift.max(SMALLEST + edge);
         }
+        r.clone()
     }
 }
 
@@ -213,7 +216,7 @@ impl Search {
         slope: &mut Slope,
         (reach, options): (&mut f64, &OrbitOptions),
     ) -> Result<Looked, EvalError> {
-        let (d, shift) = slope.step(&here.r, *reach);
+        let d = slope.step(&here.r, *reach);
         let mut y: Vec<f64> = here.y.iter().zip(&d).zip(&here.s).map(|((y, d), s)| y + d * s).collect();
         map.admit(&here.g, &mut y);
         slope.age += 1;
@@ -223,7 +226,7 @@ impl Search {
             return Ok(here);
         };
         let (d, r) = (apart(&y, &here), in_scales(&there, &here));
-        let (foreseen, before) = (&d * shift, here.r.amax());
+        let (foreseen, before) = (&here.r + &slope.a * &d, here.r.amax());
         let miss = ((&r - &foreseen).amax() - noise) / before.max(foreseen.amax());
         if d.amax() > LEARNT * noise {
             slope.learn(&d, &(&r - &here.r));
