@@ -1,7 +1,7 @@
 //! What the scene `rig` refuses, and where it points.
 
 use crate::common::*;
-use gudgeon_core::result::{Check, Verdict};
+use gudgeon_core::result::{Check, NoteLevel, Verdict};
 use gudgeon_scene::check;
 
 #[test]
@@ -40,4 +40,21 @@ fn what_is_not_a_number_holds_no_check() {
         assert_eq!(check(1.0, verdict).holds(), close);
         assert_eq!(check(2.0, verdict).holds(), !close);
     }
+}
+
+/// Every rig that is shipped gives its results at every point of its sweeps: `gudgeon run` ends without a failure.
+#[test]
+fn shipped_rigs_run_at_every_point() {
+    let folder = case_file("rigs/kinematics").with_file_name("");
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort_unstable();
+    for name in &names {
+        let r = run_case(&format!("rigs/{name}"), &[]);
+        let failed: Vec<_> = r.solver.notes.iter().filter(|n| n.level == NoteLevel::Failure).collect();
+        assert!(failed.is_empty(), "{name}: {failed:?}");
+    }
+    assert!(names.len() > 30, "{names:?}");
 }
