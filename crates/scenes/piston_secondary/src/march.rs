@@ -311,7 +311,9 @@ impl<'a> Cycle<'a> {
 /// What the search of the periodic motion found, for a person.
 fn told(report: &OrbitReport, wanted: f64, most: usize) -> Vec<Note> {
     let mut notes = Vec::new();
-    if !report.converged {
+    if !report.converged && report.error_estimate <= wanted && report.multiplier > 1.0 {
+        notes.push(repels(report));
+    } else if !report.converged {
         notes.push(not_periodic((report.cycles, most), report.error_estimate, wanted));
     }
     if report.multiplier > 0.9 {
@@ -328,6 +330,15 @@ fn told(report: &OrbitReport, wanted: f64, most: usize) -> Vec<Note> {
         notes.push(Note::caution("subharmonic", text).amount("period", f64::from(report.period), "1"));
     }
     notes
+}
+
+/// A periodic motion that was found, and that the piston does not make.
+fn repels(report: &OrbitReport) -> Note {
+    let text = format!(
+        "The periodic motion that was found repels: a deviation of the lateral position grows to {:.3} of itself in a cycle, and no other motion was found within {} cycles. Raise `solver.max_cycles`, or look at the transient with `solver.cycles`.",
+        report.multiplier, report.cycles
+    );
+    Note::failure("not_periodic", text).amount("multiplier", report.multiplier, "1")
 }
 
 /// What a motion that is not periodic says: a caution up to ten times the distance that is admitted, a failure beyond.
