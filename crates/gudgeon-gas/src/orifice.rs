@@ -39,7 +39,7 @@ pub struct Orifice {
     pub law: OrificeFormula,
     /// `ε` of the laminar branch: below a relative pressure difference of about `ε` the flow is proportional to the pressure
     /// difference instead of its square root. 0 gives the bare law, whose slope is infinite at zero pressure difference: below a relative difference of 1e-8 (in the rig
-    /// `gas_volumes`, ten times its tolerance) a parabola stands for it. Steps are then short wherever pressures come near each other. Not used by `isentropic_truncated`.
+    /// `gas_volumes`, ten times its tolerance) a parabola stands for it. Not used by `isentropic_truncated`.
     #[serde(default = "default_laminar")]
     pub laminar: Ratio<NonNegative>,
     /// Ratio of specific heats in the law: the machine's constant one, or that of a gas at the temperature it comes with.

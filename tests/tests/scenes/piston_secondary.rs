@@ -161,8 +161,8 @@ fn a_motion_that_is_not_periodic_is_told_and_marked() {
     assert!(note.amounts["periodicity_error"].value > 1e-5 && value(&r, "friction_work") > 0.0);
 }
 
-/// With twice the oil's viscosity and more, the piston with a pin offset of 0.2 mm loses the motion that it has with thin oil: a cycle then moves it by a thousandth of the clearance, and 200 plain
-/// cycles end as far from the motion that is left, 0.001 a cycle still. Secants took 60 cycles and ended nowhere.
+/// With about twice the viscosity the piston with a pin offset of 0.2 mm loses the motion that it has with thin oil, and creeps to another: at 31 mPa s by 0.001 of the clearance a cycle
+/// after 200 plain ones. Secants took 60 cycles and ended nowhere.
 #[test]
 fn a_piston_that_creeps_to_its_other_motion_is_followed() {
     for (viscosity, e_top) in [("31 mPa s", -3.3799), ("32 mPa s", -3.3587), ("34 mPa s", -3.3308)] {
