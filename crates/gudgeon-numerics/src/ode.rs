@@ -24,6 +24,7 @@
 //! sampled geometrically from its start, so that a flight much shorter than the step is still seen. Nothing depends on
 //! waiting times.
 
+mod again;
 mod check;
 mod core;
 mod dense;
@@ -38,6 +39,7 @@ mod step_matrix;
 mod sums;
 mod system;
 
+pub use again::Again;
 pub(crate) use check::{Shape, check};
 pub(crate) use core::{Core, End, non_finite};
 pub(crate) use dense::Interpolant;

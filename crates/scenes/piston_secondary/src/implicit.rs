@@ -2,7 +2,7 @@
 
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
-use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, Options, StepView};
+use gudgeon_numerics::ode::{Again, Flow, IntegrateError, Integrator, Options, StepView};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 use gudgeon_scene::{Asked, MethodSetting, RunError};
@@ -26,6 +26,10 @@ const ORDER_FIVE: f64 = 2e-4;
 const TIGHT: f64 = 1e-6;
 /// How repeatable a cycle is, in tolerances.
 const ACCURACY: f64 = 0.1;
+/// Largest change of the states since steps were chosen, over what counts as one between cycles, for which they are taken again.
+const NEAR: f64 = 0.05;
+/// Part of its accuracy by which a cycle in the steps of the one before differs from it.
+pub(super) const NOISE_AGAIN: f64 = 0.1;
 
 /// Adaptive L-stable integration with error control.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -104,7 +108,7 @@ impl PistonSolverSpec for Implicit {
             PistonIntegrator::Radau5 => Method::Radau(Box::new(Radau5::new(states, 0, None))),
             _ => rodas(Formula::Rodas5P),
         };
-        Box::new(Adaptive { method, tolerance: self.tolerance.si() })
+        Box::new(Adaptive { method, tolerance: self.tolerance.si(), again: Again::default() })
     }
 
     fn settings(&self, own: Option<[u32; 2]>) -> Vec<MethodSetting> {
@@ -163,9 +167,16 @@ enum Method {
     Radau(Box<Radau5>),
 }
 
+/// Whether a cycle from `y` may take the steps of one from `start` again.
+pub(super) fn near(a: &Assembly, start: &[f64], y: &[f64]) -> bool {
+    let states = a.layout.states.iter().zip(start).zip(y);
+    states.map(|((s, a), b)| (b - a).abs() / s.cycle_scale).fold(0.0, f64::max) <= NEAR
+}
+
 struct Adaptive {
     method: Method,
     tolerance: f64,
+    again: Again,
 }
 
 impl PistonSolver for Adaptive {
@@ -182,9 +193,36 @@ impl PistonSolver for Adaptive {
         options.absolute = layout.states.iter().map(|s| !s.relative).collect();
         (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MAX_STEPS);
         options.event_samples = 0;
+        options.ends = self.again.begin(y, options.rtol, |start| near(of.a, start, y));
         if let Some(t) = trajectory.as_deref_mut() {
             t.start(0.0, y);
         }
+        let outcome = self.stretches(of, y, options, trajectory);
+        if outcome.is_err() {
+            // Steps of a part of a cycle say nothing of the rest.
+            self.again = Again::default();
+        }
+        outcome
+    }
+
+    fn noise(&self) -> f64 {
+        if self.again.repeats() { NOISE_AGAIN } else { 1.0 }
+    }
+
+    fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {
+        Trajectory::new(a.layout.n, Between::Dense)
+    }
+}
+
+impl Adaptive {
+    /// A cycle, in stretches between which oil is moved.
+    fn stretches(
+        &mut self,
+        of: &mut Cycled<'_>,
+        y: &mut [f64],
+        mut options: Options,
+        mut trajectory: Option<&mut Trajectory>,
+    ) -> Result<(), RunError> {
         let at = |t: f64| move |source| RunError::Eval { theta_deg: t.to_degrees(), source };
         of.a.begin_oil(y, &of.work.w).map_err(at(0.0))?;
         for k in 0..of.a.oil_steps() {
@@ -196,12 +234,6 @@ impl PistonSolver for Adaptive {
         Ok(())
     }
 
-    fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {
-        Trajectory::new(a.layout.n, Between::Dense)
-    }
-}
-
-impl Adaptive {
     /// Integrates over `span` \[rad\], in which the same nodes of the films are filled. Returns a good step for what follows.
     fn stretch(
         &mut self,
@@ -212,8 +244,10 @@ impl Adaptive {
         mut trajectory: Option<&mut Trajectory>,
     ) -> Result<f64, RunError> {
         let breakpoints = std::mem::take(&mut of.a.breakpoints);
+        let again = &mut self.again;
         let mut problem = Equations { a: of.a, work: of.work };
         let mut observe = |_: &mut Equations<'_>, view: &dyn StepView| {
+            again.step(view.t1());
             if let Some(t) = trajectory.as_deref_mut() {
                 t.step(view);
             }

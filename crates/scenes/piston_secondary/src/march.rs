@@ -122,6 +122,9 @@ impl CycleMap for Cycle<'_> {
         }
         Ok((self.a.piston.film_evaluations() - before) as f64)
     }
+    fn noise(&self) -> f64 {
+        self.solver.noise()
+    }
     fn known(&self) -> &[Change] {
         self.known
     }

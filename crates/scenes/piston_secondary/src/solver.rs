@@ -72,6 +72,11 @@ pub trait PistonSolver {
         trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError>;
 
+    /// Part of its accuracy by which the last cycle differs from another from the same start.
+    fn noise(&self) -> f64 {
+        1.0
+    }
+
     /// An empty cycle, as the solver fills it.
     fn trajectory(&self, a: &Assembly, work: &Work) -> Trajectory;
 }

@@ -6,12 +6,12 @@ pub mod passed;
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::LateralLoads;
 use gudgeon_numerics::elementary;
-use gudgeon_numerics::ode::IntegrateError;
+use gudgeon_numerics::ode::{Again, IntegrateError};
 use gudgeon_scene::RunError;
 
 use super::assembly::Assembly;
 use super::equations::{LEAST_GAP, Work};
-use super::implicit::{FIRST_STEP, LARGEST_STEP, MAX_STEPS};
+use super::implicit::{FIRST_STEP, LARGEST_STEP, MAX_STEPS, NOISE_AGAIN, near};
 use super::solver::{Accuracy, Cycled, PistonSolver};
 use super::trajectory::{Between, Trajectory};
 use formula::{ESDIRK3, Formula};
@@ -53,6 +53,9 @@ pub(super) struct Staged {
     h: f64,
     tried: u64,
     rejected: bool,
+    /// Ends of the steps of the cycle before where they are taken again, those that are passed taken off; the last one first.
+    ends: Vec<f64>,
+    again: Again,
 }
 
 impl Staged {
@@ -72,6 +75,8 @@ impl Staged {
             h: FIRST_STEP,
             tried: 0,
             rejected: false,
+            ends: Vec::new(),
+            again: Again::default(),
         }
     }
 
@@ -93,7 +98,8 @@ impl Staged {
         let window = (t + aside, end - aside);
         self.begin(of, window.0).map_err(stopped(t))?;
         while t < end {
-            let (h, last) = self.propose(t, end)?;
+            let to = self.known_end(t).map_or(end, |known| known.min(end));
+            let (h, last) = self.propose(t, to)?;
             let error = match self.attempt(of, (t, h), window, tolerance) {
                 Ok(error) => error,
                 Err(e) if e.is_recoverable() => {
@@ -110,7 +116,8 @@ impl Staged {
                 continue;
             }
             of.stats.steps += 1;
-            let t1 = if last { end } else { t + h };
+            let t1 = if last { to } else { t + h };
+            self.again.step(t1);
             if let Some(trajectory) = trajectory.as_deref_mut() {
                 trajectory.step(&self.passed(of.a, t, t1));
             }
@@ -131,6 +138,12 @@ impl Staged {
         self.slope.fill(0.0);
         of.stats.rhs += 1;
         of.a.piston.ask(&now, &self.places[0], &mut self.rates[0]).balance().map(|_| ())
+    }
+
+    /// Where the step ends that was taken from `t` before.
+    fn known_end(&mut self, t: f64) -> Option<f64> {
+        while self.ends.pop_if(|end| *end <= t).is_some() {}
+        self.ends.last().copied()
     }
 
     /// The step to try next, and whether it is the last one before `end`.
@@ -170,7 +183,13 @@ impl Staged {
         self.places.swap(0, end);
         self.rates.swap(0, end);
         let wanted = h * if self.rejected { factor.min(1.0) } else { factor };
-        self.h = if h < self.h { self.h.max(wanted) } else { wanted };
+        self.h = if !self.ends.is_empty() {
+            f64::INFINITY
+        } else if h < self.h {
+            self.h.max(wanted)
+        } else {
+            wanted
+        };
         self.rejected = false;
     }
 
@@ -256,17 +275,30 @@ impl PistonSolver for Staged {
         self.rates[0].fill(0.0);
         of.a.piston.forget_stages();
         (self.h, self.tried, self.rejected) = (FIRST_STEP, 0, false);
-        let ends = of.a.bends();
+        let tolerance = accuracy.tolerance(self.tolerance);
+        self.ends = self.again.begin(y, tolerance, |start| near(of.a, start, y));
+        if !self.ends.is_empty() {
+            self.h = f64::INFINITY;
+        }
+        self.ends.reverse();
         let mut from = 0.0;
-        for end in ends {
+        for end in of.a.bends() {
             if end > from {
-                self.stretch(of, (from, end), accuracy.tolerance(self.tolerance), trajectory.as_deref_mut())?;
+                let outcome = self.stretch(of, (from, end), tolerance, trajectory.as_deref_mut());
+                if outcome.is_err() {
+                    self.again = Again::default();
+                }
+                outcome?;
                 from = end;
             }
         }
         states(of.a, &self.places[0], y);
         of.work.w.copy_from_slice(&self.rates[0]);
         Ok(())
+    }
+
+    fn noise(&self) -> f64 {
+        if self.again.repeats() { NOISE_AGAIN } else { 1.0 }
     }
 
     fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {

@@ -9,8 +9,8 @@ use gudgeon_core::result::{Balance, Gradients};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::{
-    Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
-    Stats, StepView,
+    Again, Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options,
+    Stage, Stats, StepView,
 };
 use gudgeon_numerics::orbit::{Bend, Change, CycleMap, Led, OrbitOptions, OrbitReport, periodic_orbit};
 use gudgeon_numerics::panel::{LOBATTO, SIMPSON};
@@ -25,13 +25,12 @@ use super::modes::EventOf;
 use super::pack::Pack;
 use super::solver::{RingPackSolverSpec, Solution, Wanted};
 use super::staged::Staging;
-use super::waveform::{Setting, Waveform};
+use super::waveform::{Setting, Waveform, moved};
 use gudgeon_scene::{Asked, GradientError, MethodSetting, RunError, Stopped};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-mod again;
 mod approach;
 mod films_alone;
 mod gradients;
@@ -41,7 +40,6 @@ mod search;
 
 pub use integrator::RingIntegrator;
 
-use again::Again;
 use films_alone::FilmsAlone;
 use sampler::Sampler;
 use search::{oil_least, oil_noise, orbit_options, stopped};
@@ -363,7 +361,8 @@ impl Cycle<'_> {
         }
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
         let mut outcome = Ok(());
-        options.ends = self.again.begin(self.pack, y, rtol);
+        let near = |start: &[f64]| moved(self.pack, 0..y.len(), start, y) <= NEAR;
+        options.ends = self.again.begin(y, rtol, near);
         if let Some(films) = &mut self.films {
             films.waveform.begin_beside();
         }
@@ -525,6 +524,8 @@ const FINEST: f64 = 1e-13;
 /// What counts as one in the distance between the ends of a cycle of films alone, over that in one of the whole pack: of the oil that faces hold, and of the film on the liner. They
 /// take the same steps again, and it is by such amounts that ring 1 runs dry at its upper turning point over a hundred cycles: a tenth of a micrometre on the liner, and a hundredth of the friction.
 const FINER: (f64, f64) = (0.1, 0.02);
+/// Largest change of the states since steps were chosen, over what counts as one between cycles, for which they are taken again.
+const NEAR: f64 = 0.05;
 /// Part of its accuracy by which a cycle in the steps of the one before differs from it, without oil on the liner and with it.
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.

@@ -1,12 +1,7 @@
 //! Steps of a cycle that the next one takes again, near the periodic state: hardly one of them is rejected, and cycles differ by their starts alone, not by where steps
 //! fell. A search then sees a tenth of the noise, and a slow mode, which multiplies that, sooner.
 
-use super::super::pack::Pack;
-use super::super::waveform::moved;
-
-/// Largest change of the states since the steps were chosen, over what counts as one between cycles, for which they are taken again.
-const NEAR: f64 = 0.05;
-/// How many times as many steps as were chosen are taken again: where a ring flutters each cycle divides others.
+/// How many times as many steps as were chosen are taken again: where a part of the machine flutters each cycle divides others.
 const MOST: f64 = 1.1;
 
 /// The steps of the last cycle, and what they were chosen for.
@@ -24,14 +19,14 @@ pub struct Again {
 }
 
 impl Again {
-    /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps, or none where these are to be as long as their errors allow.
-    pub fn begin(&mut self, pack: &Pack, y: &[f64], rtol: f64) -> Vec<f64> {
+    /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps for [`super::Options::ends`], or none where these are to be as long as their errors allow. `near` says
+    /// whether `y` is as near to the start of the cycle for which steps were chosen as their taking again asks for.
+    pub fn begin(&mut self, y: &[f64], rtol: f64, near: impl FnOnce(&[f64]) -> bool) -> Vec<f64> {
         if !self.repeats {
             self.chosen = self.ends.len();
         }
-        self.repeats = self.rtol == rtol
-            && self.ends.len() as f64 <= MOST * self.chosen as f64
-            && moved(pack, 0..y.len(), &self.start, y) <= NEAR;
+        self.repeats =
+            self.rtol == rtol && self.ends.len() as f64 <= MOST * self.chosen as f64 && near(&self.start);
         let ends = std::mem::take(&mut self.ends);
         if self.repeats {
             return ends;
@@ -51,6 +46,7 @@ impl Again {
     }
 
     /// Whether the last cycle took the steps of the one before.
+    #[must_use]
     pub const fn repeats(&self) -> bool {
         self.repeats
     }
