@@ -26,13 +26,16 @@ const INCREMENT: (f64, f64) = (0.1, 0.02);
 const OVER_NOISE: f64 = 30.0;
 /// Step over the noise from which on it says something of the slope.
 const LEARNT: f64 = 10.0;
-/// How much a residual may differ from what was foreseen, over the larger of it and the one before, so that longer steps are tried, and that the step is taken.
+/// How much a residual may differ from what was foreseen, over the larger of it and the one before, so that much longer steps are tried, longer ones, and that the step is taken.
+const STRAIGHTER: f64 = 0.1;
 const STRAIGHT: f64 = 0.25;
 const BENT: f64 = 1.0;
 /// How far the shift is above the largest eigenvalue, over that; the smallest that is tried after none, and the largest.
 const ABOVE: f64 = 0.2;
 const SMALLEST: f64 = 1e-3;
 const LARGEST: f64 = 1e6;
+/// How many times as noisy a map is taken to be as before where steps go astray that are hardly longer than its noise.
+const DOUBTED: f64 = 3.0;
 /// Cycles at the noise of the map before a more accurate one is asked for: many are smoother than they say.
 const SMOOTHER: usize = 1;
 /// Steps of one slope, updates included.
@@ -108,19 +111,23 @@ impl Search {
     ) -> Result<(), EvalError> {
         let mut options = *options;
         let (mut reach, mut slope, mut passed, mut last) = (REACH, None::<Slope>, 0.0, f64::INFINITY);
-        let mut idle = 0;
+        let (mut idle, mut doubt) = (0, 1.0);
         let mut here = self.looked(map, y, &options)?;
-        while self.report.cycles < options.max_cycles && !map.gives_up() {
+        while !map.gives_up() {
             let known = match slope.take().filter(|s| s.age < KEPT) {
                 Some(known) => known,
                 None if self.report.cycles + map.dim() >= options.max_cycles => break,
                 None => self.slope(map, &here, (reach, &options))?,
             };
             let known = slope.insert(known);
-            let (estimate, blurred) = self.judge_by(known, &here, last, map.noise() * options.accuracy);
+            let (estimate, blurred) =
+                self.judge_by(known, &here, last, doubt * map.noise() * options.accuracy);
             y.copy_from_slice(&here.g);
             if estimate.max(blurred) <= options.tolerance && sinks(estimate, passed, &options) {
                 self.report.converged = true;
+                break;
+            }
+            if self.report.cycles >= options.max_cycles {
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
@@ -132,11 +139,12 @@ impl Search {
                 }
                 options.refinements -= 1;
                 options.accuracy *= 0.1;
-                (idle, last) = (0, f64::INFINITY);
+                (idle, last, doubt) = (0, f64::INFINITY, 1.0);
+                reach = reach.max(NEARER * REACH);
                 here = self.looked(map, &here.y, &options)?;
                 continue;
             }
-            here = self.stepped(map, here, known, (&mut reach, &options))?;
+            here = self.stepped(map, here, known, (&mut reach, &mut doubt, &options))?;
         }
         if let Some(slope) = &slope {
             self.report.changes = changes(&secants(slope, options.accuracy), &here.s);
@@ -214,13 +222,13 @@ impl Search {
         map: &mut dyn CycleMap,
         here: Looked,
         slope: &mut Slope,
-        (reach, options): (&mut f64, &OrbitOptions),
+        (reach, doubt, options): (&mut f64, &mut f64, &OrbitOptions),
     ) -> Result<Looked, EvalError> {
         let d = slope.step(&here.r, *reach);
         let mut y: Vec<f64> = here.y.iter().zip(&d).zip(&here.s).map(|((y, d), s)| y + d * s).collect();
         map.admit(&here.g, &mut y);
         slope.age += 1;
-        let noise = map.noise() * options.accuracy;
+        let noise = *doubt * map.noise() * options.accuracy;
         let Some(there) = self.tried(map, &y, options)? else {
             *reach = NEARER * d.amax();
             return Ok(here);
@@ -232,11 +240,16 @@ impl Search {
             slope.learn(&d, &(&r - &here.r));
         }
         if miss > BENT && r.amax() > before + noise && d.amax() > OVER_NOISE * noise {
+            if d.amax() <= 2.0 * OVER_NOISE * noise {
+                // So near the map cannot be that bent: it is noisier than it says.
+                *doubt *= DOUBTED;
+            }
             (*reach, slope.age) = ((NEARER * d.amax()).max(OVER_NOISE * noise), slope.age + KEPT / 2);
             return Ok(here);
         }
         if miss < STRAIGHT {
-            *reach = (2.0 * d.amax()).clamp(*reach, FARTHEST);
+            let farther = if miss < STRAIGHTER { 4.0 } else { 2.0 };
+            *reach = (farther * d.amax()).clamp(*reach, FARTHEST);
         }
         Ok(there)
     }

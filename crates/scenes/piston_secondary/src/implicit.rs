@@ -67,11 +67,15 @@ pub enum PistonIntegrator {
 }
 
 impl Implicit {
-    /// The Rosenbrock or Radau method that `stages` and `rodas` stand for at the tolerance. Order five pays where the films are smooth; the switch is where both
-    /// need the same films.
+    /// The Rosenbrock or Radau method that `stages` and `rodas` stand for at the own tolerance.
     fn integrator(&self) -> PistonIntegrator {
+        self.integrator_at(self.tolerance.si())
+    }
+
+    /// The same at `tolerance`. Order five pays where the films are smooth; the switch is where both need the same films.
+    fn integrator_at(&self, tolerance: f64) -> PistonIntegrator {
         match self.integrator {
-            PistonIntegrator::Stages | PistonIntegrator::Rodas if self.tolerance.si() >= ORDER_FIVE => {
+            PistonIntegrator::Stages | PistonIntegrator::Rodas if tolerance >= ORDER_FIVE => {
                 PistonIntegrator::Rodas3
             }
             PistonIntegrator::Stages | PistonIntegrator::Rodas => PistonIntegrator::Rodas5p,
@@ -101,14 +105,10 @@ impl PistonSolverSpec for Implicit {
         if self.integrator == PistonIntegrator::Stages && Staged::suits(a) {
             return Box::new(Staged::new(a, self.tolerance.si()));
         }
-        let states = a.layout.n;
-        let rodas = |formula| Method::Rodas(Box::new(Rodas::with(formula, states, 0, None)));
-        let method = match self.integrator() {
-            PistonIntegrator::Rodas3 => rodas(Formula::Rodas3),
-            PistonIntegrator::Radau5 => Method::Radau(Box::new(Radau5::new(states, 0, None))),
-            _ => rodas(Formula::Rodas5P),
-        };
-        Box::new(Adaptive { method, tolerance: self.tolerance.si(), again: Again::default() })
+        let (own, finest) = (self.integrator(), self.integrator_at(0.0));
+        let method = Method::new(own, a.layout.n);
+        let finer = (own != finest).then(|| Method::new(finest, a.layout.n));
+        Box::new(Adaptive { method, finer, tolerance: self.tolerance.si(), again: Again::default() })
     }
 
     fn settings(&self, own: Option<[u32; 2]>) -> Vec<MethodSetting> {
@@ -167,6 +167,17 @@ enum Method {
     Radau(Box<Radau5>),
 }
 
+impl Method {
+    fn new(name: PistonIntegrator, states: usize) -> Self {
+        let rodas = |formula| Self::Rodas(Box::new(Rodas::with(formula, states, 0, None)));
+        match name {
+            PistonIntegrator::Rodas3 => rodas(Formula::Rodas3),
+            PistonIntegrator::Radau5 => Self::Radau(Box::new(Radau5::new(states, 0, None))),
+            _ => rodas(Formula::Rodas5P),
+        }
+    }
+}
+
 /// Whether a cycle from `y` may take the steps of one from `start` again.
 pub(super) fn near(a: &Assembly, start: &[f64], y: &[f64]) -> bool {
     let states = a.layout.states.iter().zip(start).zip(y);
@@ -175,6 +186,8 @@ pub(super) fn near(a: &Assembly, start: &[f64], y: &[f64]) -> bool {
 
 struct Adaptive {
     method: Method,
+    /// That of a search that asks for less error than `tolerance`, where it is another: the longest step may leave the own one no better.
+    finer: Option<Method>,
     tolerance: f64,
     again: Again,
 }
@@ -253,7 +266,8 @@ impl Adaptive {
             }
             Flow::Continue
         };
-        let outcome = match &mut self.method {
+        let finer = self.finer.as_mut().filter(|_| options.rtol < ORDER_FIVE);
+        let outcome = match finer.unwrap_or(&mut self.method) {
             Method::Rodas(m) => {
                 m.integrate(&mut problem, span, &breakpoints, y, &mut [], options, of.stats, &mut observe)
             }
