@@ -223,7 +223,7 @@ pub fn periodic_orbit(
         search.extrapolated(map, y, &options, 1)?;
     }
     if !search.doubled && !search.report.converged && newton::serves(map, search.report.cycles, &options) {
-        search.by_newton(map, y, &options)?;
+        options.accuracy = search.by_newton(map, y, &options)?;
     }
     let options = &options;
     if !search.doubled

@@ -9,9 +9,7 @@
 
 use nalgebra::{DMatrix, DVector, Schur};
 
-use super::{
-    CycleMap, IDLE, MAX_GAIN, NEARER, OrbitOptions, SETTLED, SUSPECT, Search, Secant, changes, sinks,
-};
+use super::{CycleMap, IDLE, MAX_GAIN, NEARER, OrbitOptions, SETTLED, Search, Secant, changes, sinks};
 use crate::EvalError;
 
 /// Most states.
@@ -21,8 +19,9 @@ pub const BEFORE: usize = 12;
 /// First longest step, and the longest.
 const REACH: f64 = 0.1;
 const FARTHEST: f64 = 1.0;
-/// Part of the longest step, and at most so much, by which the slope is taken; at least so many times the noise.
-const INCREMENT: (f64, f64) = (0.1, 0.02);
+/// Part of the longest step by which the slope is taken, and limits of that; at least so many times the noise. Kinks of a map look like noise to a shorter one.
+const INCREMENT: f64 = 0.1;
+const INCREMENTS: (f64, f64) = (1e-3, 0.02);
 const OVER_NOISE: f64 = 30.0;
 /// Step over the noise from which on it says something of the slope.
 const LEARNT: f64 = 10.0;
@@ -30,6 +29,8 @@ const LEARNT: f64 = 10.0;
 const STRAIGHTER: f64 = 0.1;
 const STRAIGHT: f64 = 0.25;
 const BENT: f64 = 1.0;
+/// How many times as large a residual must be as the one before for a step to be taken back.
+const WORSE: f64 = 2.0;
 /// How far the shift is above the largest eigenvalue, over that; the smallest that is tried after none, and the largest.
 const ABOVE: f64 = 0.2;
 const SMALLEST: f64 = 1e-3;
@@ -38,6 +39,8 @@ const LARGEST: f64 = 1e6;
 const DOUBTED: f64 = 3.0;
 /// Cycles at the noise of the map before a more accurate one is asked for: many are smoother than they say.
 const SMOOTHER: usize = 1;
+/// Multiplier from which on the machine itself is asked whether it stays. Slopes are not closer than that.
+const REPELS: f64 = 1.01;
 /// Steps of one slope, updates included.
 const KEPT: usize = 6;
 
@@ -102,13 +105,13 @@ impl Slope {
 }
 
 impl Search {
-    /// Searches from `y`, until there were `options.max_cycles` cycles.
+    /// Searches from `y`, until there were `options.max_cycles` cycles; the accuracy that was asked for at last.
     pub(super) fn by_newton(
         &mut self,
         map: &mut dyn CycleMap,
         y: &mut [f64],
         options: &OrbitOptions,
-    ) -> Result<(), EvalError> {
+    ) -> Result<f64, EvalError> {
         let mut options = *options;
         let (mut reach, mut slope, mut passed, mut last) = (REACH, None::<Slope>, 0.0, f64::INFINITY);
         let (mut idle, mut doubt) = (0, 1.0);
@@ -130,9 +133,10 @@ impl Search {
             if self.report.cycles >= options.max_cycles {
                 break;
             }
-            passed = if estimate <= options.tolerance { estimate } else { 0.0 };
+            passed = if estimate.max(blurred) <= options.tolerance { estimate } else { 0.0 };
             last = here.r.amax();
-            idle = if last <= SETTLED * options.accuracy { idle + 1 } else { 0 };
+            // What passes is looked at once more before more accuracy is asked for.
+            idle = if passed == 0.0 && last <= SETTLED * options.accuracy { idle + 1 } else { 0 };
             if idle > if options.refinements > 0 { SMOOTHER } else { IDLE } {
                 if options.refinements == 0 {
                     break;
@@ -149,7 +153,7 @@ impl Search {
         if let Some(slope) = &slope {
             self.report.changes = changes(&secants(slope, options.accuracy), &here.s);
         }
-        Ok(())
+        Ok(options.accuracy)
     }
 
     /// A cycle from `y`.
@@ -191,7 +195,7 @@ impl Search {
     ) -> Result<Slope, EvalError> {
         let n = here.y.len();
         let mut slope = Slope { a: -DMatrix::identity(n, n), age: 0 };
-        let h = (INCREMENT.0 * reach).min(INCREMENT.1).max(OVER_NOISE * options.accuracy);
+        let h = (INCREMENT * reach).clamp(INCREMENTS.0, INCREMENTS.1).max(OVER_NOISE * options.accuracy);
         for j in 0..n {
             let mut y = here.y.clone();
             y[j] += h * here.s[j].copysign(here.r[j]);
@@ -207,7 +211,7 @@ impl Search {
     fn judge_by(&mut self, slope: &Slope, here: &Looked, last: f64, noise: f64) -> (f64, f64) {
         let residual = here.r.amax();
         let (_, multiplier, gain) = slope.spectrum();
-        (self.report.multiplier, self.suspect) = (multiplier, multiplier > SUSPECT);
+        (self.report.multiplier, self.suspect) = (multiplier, multiplier > REPELS);
         let left = slope.a.clone().lu().solve(&here.r).map_or(f64::INFINITY, |d| d.amax());
         let (estimate, blurred) = (left.max(residual), gain * residual.max(last).min(noise));
         self.report.residual = residual;
@@ -239,7 +243,7 @@ impl Search {
         if d.amax() > LEARNT * noise {
             slope.learn(&d, &(&r - &here.r));
         }
-        if miss > BENT && r.amax() > before + noise && d.amax() > OVER_NOISE * noise {
+        if miss > BENT && r.amax() > WORSE * before + noise && d.amax() > OVER_NOISE * noise {
             if d.amax() <= 2.0 * OVER_NOISE * noise {
                 // So near the map cannot be that bent: it is noisier than it says.
                 *doubt *= DOUBTED;
@@ -269,7 +273,7 @@ fn in_scales(of: &Looked, other: &Looked) -> DVector<f64> {
 fn secants(slope: &Slope, noise: f64) -> Vec<Secant> {
     let n = slope.a.nrows();
     let along = |j: usize| {
-        let dy = DVector::from_fn(n, |i, _| if i == j { INCREMENT.1 } else { 0.0 });
+        let dy = DVector::from_fn(n, |i, _| if i == j { INCREMENTS.1 } else { 0.0 });
         Secant { dr: &slope.a * &dy, dy, noise }
     };
     (0..n).map(along).collect()
