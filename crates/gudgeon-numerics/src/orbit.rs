@@ -159,6 +159,8 @@ const FRESH: f64 = 1e-9;
 const DEPTH: usize = 8;
 /// Longest repetition that is looked for.
 const MAX_PERIOD: usize = 4;
+/// Multiplier beyond which the errors of the steps of many cycles add up.
+const SLOW: f64 = 0.9;
 /// Multiplier beyond which plain repetition must confirm a fixed point.
 const SUSPECT: f64 = 0.97;
 /// The same for multipliers that are negative or complex: curvature, as in the doubling of a period, makes these differ most between
@@ -216,6 +218,7 @@ pub fn periodic_orbit(
         return Ok(search.finish());
     }
     let mut options = *options;
+    let asked = options.accuracy;
     search.extrapolated(map, y, &options, 1)?;
     while options.refinements > 0 && !search.report.converged && search.noisy {
         options.refinements -= 1;
@@ -223,6 +226,11 @@ pub fn periodic_orbit(
         search.extrapolated(map, y, &options, 1)?;
     }
     if !search.doubled && !search.report.converged && newton::serves(map, search.report.cycles, &options) {
+        options.accuracy = search.by_newton(map, y, &options)?;
+    }
+    if search.gathers(map, &options) && options.accuracy == asked {
+        options.refinements -= 1;
+        options.accuracy *= 0.1;
         options.accuracy = search.by_newton(map, y, &options)?;
     }
     let options = &options;
@@ -291,6 +299,12 @@ impl Search {
             stuck: false,
             gain: 1.0,
         }
+    }
+
+    /// Whether a slow mode gathers what every cycle lacks, and a more accurate one tells how much that is.
+    fn gathers(&self, map: &dyn CycleMap, options: &OrbitOptions) -> bool {
+        let report = &self.report;
+        report.converged && report.multiplier > SLOW && options.refinements > 0 && newton::is_small(map)
     }
 
     fn finish(mut self) -> OrbitReport {
