@@ -2,7 +2,7 @@
 //!
 //! A cycle that repeats need not be the only one. A ring that leaves the liner or crosses its groove in one cycle may do so in all that follow, and
 //! not do so in any after a start from elsewhere. A search finds one of these states; which, its start decides. A finer tolerance does not tell.
-//! So a case whose scene knows another start ([`SceneCase::elsewhere`](crate::SceneCase::elsewhere)) is run from there as well.
+//! So a case whose scene knows other starts ([`SceneCase::elsewhere`](crate::SceneCase::elsewhere)) is run from there as well.
 
 use gudgeon_core::Stopped;
 use gudgeon_core::result::{Branch, Headline, Note, RunResult, Value, change};
@@ -30,7 +30,7 @@ const NOTHING: f64 = 1e-9;
 const NOT_PERIODIC: &str = "not_periodic";
 const SUBHARMONIC: &str = "subharmonic";
 
-/// Runs the case from another start; adds the periodic states to the result where there are two, and a note.
+/// Runs the case from its other starts, until one leads to another periodic state; adds both states to the result, and a note.
 ///
 /// # Errors
 /// The caller wants it to end.
@@ -41,10 +41,25 @@ pub(crate) fn look_elsewhere(
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<(), RunError> {
     // What does not repeat itself is told already.
-    let Some(Elsewhere { starts: [own, other], set }) = scene.elsewhere().filter(|_| period(result) == 1)
-    else {
+    if period(result) != 1 {
         return Ok(());
-    };
+    }
+    for start in scene.elsewhere() {
+        if look_from(scene, start, result, uncertainty, progress)? {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The same from one start: whether anything was to be told.
+fn look_from(
+    scene: &dyn Scene,
+    Elsewhere { starts: [own, other], set }: Elsewhere,
+    result: &mut RunResult,
+    uncertainty: &IndexMap<String, f64>,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<bool, RunError> {
     let run = changed(scene, &set).and_then(|s| {
         s.once(&mut |p| progress(Progress { phase: "starting elsewhere".into(), fraction: p.fraction }))
     });
@@ -54,7 +69,7 @@ pub(crate) fn look_elsewhere(
         Err(e) => {
             let text = format!("from another start ({other}) the search of the periodic state failed: {e}");
             result.solver.notes.push(Note::caution("start_failed", text).of_numerics());
-            return Ok(());
+            return Ok(true);
         }
     };
     let branch =
@@ -62,11 +77,15 @@ pub(crate) fn look_elsewhere(
     let [mine, theirs] = [branch(own, result), branch(other, &found)];
     if theirs.period == 0 {
         result.solver.notes.push(unsettled(&theirs));
-    } else if let Some(name) = another(&mine.results, &theirs.results, &result.leading(), uncertainty) {
-        result.solver.notes.push(several(&mine, &theirs, name));
-        result.branches = vec![mine, theirs];
+        return Ok(true);
     }
-    Ok(())
+    let leading = result.leading();
+    let Some(name) = another(&mine.results, &theirs.results, &leading, uncertainty) else {
+        return Ok(false);
+    };
+    result.solver.notes.push(several(&mine, &theirs, name));
+    result.branches = vec![mine, theirs];
+    Ok(true)
 }
 
 /// The first result by which two states, whose results are `a` and `b`, are not one: of those that lead, or of all where none of these is told. What is known of the

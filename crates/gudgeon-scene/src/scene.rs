@@ -85,9 +85,10 @@ pub trait SceneCase:
         loaded.refinements()
     }
 
-    /// Another start of the search of a periodic state, for cases that may have several; none where their state is the only one, or where a run tells all.
-    fn elsewhere(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Option<Elsewhere> {
-        None
+    /// Other starts of the search of a periodic state, for cases that may have several, those first that most often tell; none where their state is the only one, or where a run
+    /// tells all.
+    fn elsewhere(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Vec<Elsewhere> {
+        Vec::new()
     }
 
     /// Derivatives of the results by inputs, at a fraction of the cost of runs with other inputs: from the case as it stands, and for each input the case
@@ -134,7 +135,7 @@ pub trait Scene: Send + Sync {
     /// As [`SceneCase::refinements`].
     fn refinements(&self) -> Vec<Refinement>;
     /// As [`SceneCase::elsewhere`].
-    fn elsewhere(&self) -> Option<Elsewhere>;
+    fn elsewhere(&self) -> Vec<Elsewhere>;
     /// Its numbers, words and models, for a program that offers them to a person.
     fn inputs(&self) -> Vec<Input> {
         self.inputs_of(&self.resolved())
@@ -272,8 +273,8 @@ impl<C: SceneCase> Scene for Read<C> {
         C::refinements(&self.loaded)
     }
 
-    fn elsewhere(&self) -> Option<Elsewhere> {
-        self.look(|built| C::elsewhere(&self.loaded, built)).ok().flatten()
+    fn elsewhere(&self) -> Vec<Elsewhere> {
+        self.look(|built| C::elsewhere(&self.loaded, built)).unwrap_or_default()
     }
 
     fn inputs_of(&self, resolved: &serde_json::Value) -> Vec<Input> {

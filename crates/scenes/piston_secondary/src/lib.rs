@@ -9,6 +9,7 @@ pub mod assembly;
 pub mod backward_euler;
 pub mod case;
 mod draw;
+mod elsewhere;
 pub mod equations;
 mod explained;
 mod film_strokes;

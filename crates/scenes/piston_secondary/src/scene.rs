@@ -4,11 +4,13 @@ use gudgeon_case::Loaded;
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
+use gudgeon_scene::elsewhere::Elsewhere;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, WorkPrecision};
 
 use super::assemble::assemble;
 use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
+use super::elsewhere::elsewhere;
 use super::explained::{Explained, models};
 use super::impossible::impossible;
 use super::march::{Found, Purpose};
@@ -51,6 +53,10 @@ impl SceneCase for PistonSecondaryCase {
         let (c, files) = (&loaded.value, &loaded.source.files);
         let (motion, gas) = (&*c.models.kinematics, &*c.models.cylinder_pressure);
         Some(c.engine.cycle(motion, gas, c.gas.crankcase_pressure, files))
+    }
+
+    fn elsewhere(loaded: &Loaded<Self>, a: &mut Assembly) -> Vec<Elsewhere> {
+        elsewhere(&loaded.value, a)
     }
 
     fn result_names(loaded: &Loaded<Self>, a: &mut Assembly) -> Option<Vec<String>> {

@@ -67,10 +67,22 @@ impl SceneCase for PowerCylinderCase {
         all
     }
 
-    /// That of the rings.
-    fn elsewhere(loaded: &Loaded<Self>, (rings, _): &mut (Checked, Checked)) -> Option<Elsewhere> {
-        let other = rings.case.elsewhere()?;
-        Some(Elsewhere { set: vec![part_with(&loaded.value.ring_pack, "ring_pack", &other.set)], ..other })
+    /// Those of the rings and of the skirt.
+    fn elsewhere(loaded: &Loaded<Self>, (rings, skirt): &mut (Checked, Checked)) -> Vec<Elsewhere> {
+        let own = &loaded.value;
+        let parts = [
+            (rings, &own.ring_pack, "ring_pack", "the rings"),
+            (skirt, &own.piston_secondary, "piston_secondary", "the skirt"),
+        ];
+        let of = |(checked, part, field, name): (&mut Checked, &Part, &str, &str)| {
+            let placed = |start: String| format!("{name}: {start}");
+            let placed = |e: Elsewhere| Elsewhere {
+                starts: e.starts.map(placed),
+                set: vec![part_with(part, field, &e.set)],
+            };
+            checked.case.elsewhere().into_iter().map(placed).collect::<Vec<_>>()
+        };
+        parts.into_iter().flat_map(of).collect()
     }
 
     /// Those of both parts, as changes to the parts.

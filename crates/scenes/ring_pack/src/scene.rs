@@ -127,8 +127,8 @@ impl SceneCase for RingPackCase {
         loaded.refinements_with(|all| case.solver.method.resolve(bodies, &mut all["solver"]))
     }
 
-    fn elsewhere(loaded: &Loaded<Self>, pack: &mut Pack) -> Option<Elsewhere> {
-        elsewhere(&loaded.value, pack)
+    fn elsewhere(loaded: &Loaded<Self>, pack: &mut Pack) -> Vec<Elsewhere> {
+        elsewhere(&loaded.value, pack).into_iter().collect()
     }
 
     fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
