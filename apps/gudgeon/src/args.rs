@@ -97,7 +97,7 @@ pub struct RunArgs {
     /// Folder for the results [default: out/<case>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Refine every numerical setting until the uncertainty of each result is known (several runs)
+    /// Refine every numerical setting until the uncertainty of each result is known, and look for another periodic state from other starts (several runs)
     #[arg(long)]
     pub verify: bool,
     /// Print all results, not only those that lead

@@ -353,9 +353,17 @@ fn not_periodic((cycles, most): (usize, usize), error: f64, wanted: f64) -> Note
     } else {
         "Raise `solver.max_cycles`, tighten `solver.tolerance`"
     };
-    let text = format!(
-        "The motion is not periodic within {wanted:.0e} clearances after {cycles} cycles: the estimated distance is {error:.1e}. {advice}, or look at the transient with `solver.cycles`."
-    );
+    let found = if error <= wanted {
+        // What the search did not come to confirm.
+        format!(
+            "not shown to be periodic within {wanted:.0e} clearances after {cycles} cycles: the last one says {error:.1e}, but not twice"
+        )
+    } else {
+        format!(
+            "not periodic within {wanted:.0e} clearances after {cycles} cycles: the estimated distance is {error:.1e}"
+        )
+    };
+    let text = format!("The motion is {found}. {advice}, or look at the transient with `solver.cycles`.");
     let note =
         if error <= ADMITTED * wanted { Note::caution(topic, text) } else { Note::failure(topic, text) };
     note.amount("periodicity_error", error, "1").amount("wanted", wanted, "1")
