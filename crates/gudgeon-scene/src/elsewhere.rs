@@ -52,7 +52,7 @@ pub(crate) fn look_elsewhere(
     Ok(())
 }
 
-/// The same from one start: whether anything was to be told.
+/// The same from one start: whether it leads to another periodic state.
 fn look_from(
     scene: &dyn Scene,
     Elsewhere { starts: [own, other], set }: Elsewhere,
@@ -68,16 +68,16 @@ fn look_from(
         Err(RunError::Stopped) => return Err(RunError::Stopped),
         Err(e) => {
             let text = format!("from another start ({other}) the search of the periodic state failed: {e}");
-            result.solver.notes.push(Note::caution("start_failed", text).of_numerics());
-            return Ok(true);
+            tell_once(result, Note::caution("start_failed", text).of_numerics());
+            return Ok(false);
         }
     };
     let branch =
         |start: String, r: &RunResult| Branch { start, period: period(r), results: r.results.clone() };
     let [mine, theirs] = [branch(own, result), branch(other, &found)];
     if theirs.period == 0 {
-        result.solver.notes.push(unsettled(&theirs));
-        return Ok(true);
+        tell_once(result, unsettled(&theirs));
+        return Ok(false);
     }
     let leading = result.leading();
     let Some(name) = another(&mine.results, &theirs.results, &leading, uncertainty) else {
@@ -86,6 +86,14 @@ fn look_from(
     result.solver.notes.push(several(&mine, &theirs, name));
     result.branches = vec![mine, theirs];
     Ok(true)
+}
+
+/// Adds a note on a start from which nothing was found, if there is none yet.
+fn tell_once(result: &mut RunResult, note: Note) {
+    let notes = &mut result.solver.notes;
+    if notes.iter().all(|n| n.topic != note.topic) {
+        notes.push(note);
+    }
 }
 
 /// The first result by which two states, whose results are `a` and `b`, are not one: of those that lead, or of all where none of these is told. What is known of the
