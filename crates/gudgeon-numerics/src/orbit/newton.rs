@@ -248,7 +248,8 @@ impl Search {
                 // So near the map cannot be that bent: it is noisier than it says.
                 *doubt *= DOUBTED;
             }
-            (*reach, slope.age) = ((NEARER * d.amax()).max(OVER_NOISE * noise), slope.age + KEPT / 2);
+            *reach = (NEARER * d.amax()).max(OVER_NOISE * noise).min(FARTHEST);
+            slope.age += KEPT / 2;
             return Ok(here);
         }
         if miss < STRAIGHT {
