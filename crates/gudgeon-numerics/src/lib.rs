@@ -155,6 +155,7 @@ pub mod radau;
 pub mod rodas;
 pub mod roots;
 pub mod sdirk;
+mod square;
 pub mod stages;
 pub mod table;
 pub mod tangent;

@@ -2,6 +2,7 @@
 
 use crate::EvalError;
 use crate::linalg::dot;
+use crate::square::{add_outer, invert, times, transposed_times};
 
 /// Most steps of a solution.
 const STEPS: usize = 25;
@@ -57,8 +58,11 @@ pub struct StageNewton {
     moved: Vec<f64>,
     next: Vec<f64>,
     trial: Vec<f64>,
+    /// Work arrays of an inversion and an update.
     row: Vec<f64>,
     way: Vec<f64>,
+    surplus: Vec<f64>,
+    short: Vec<f64>,
 }
 
 impl StageNewton {
@@ -83,6 +87,8 @@ impl StageNewton {
             trial: v(),
             row: v(),
             way: v(),
+            surplus: v(),
+            short: v(),
         }
     }
 
@@ -232,7 +238,7 @@ impl StageNewton {
         for (k, (m, by)) in self.inverse.iter_mut().zip(&self.by).enumerate() {
             *m = f64::from(u8::from(k.is_multiple_of(n + 1))) - s * by;
         }
-        if invert(&mut self.inverse, n, &mut self.pivots, &mut self.row) {
+        if invert(&mut self.inverse, &mut self.pivots, &mut self.row) {
             self.inverted = s;
             return Ok(());
         }
@@ -250,51 +256,14 @@ impl StageNewton {
         if !(all > 0.0 && all.is_finite() && along > LEAST_TURN * all) {
             return;
         }
-        self.row.fill(0.0);
-        for (way, inverse) in way.iter().zip(self.inverse.chunks_exact(n)) {
-            self.row.iter_mut().zip(inverse).for_each(|(r, h)| *r += way * h);
+        transposed_times(&self.inverse, way, &mut self.row);
+        for k in 0..n {
+            self.surplus[k] = -(self.moved[k] - (1.0 - part) * self.r[k]) / (all * s);
+            self.short[k] = ((1.0 - part) * self.step[k] - self.next[k]) / along;
         }
-        let (by, inverse) = (self.by.chunks_exact_mut(n), self.inverse.chunks_exact_mut(n));
-        for (k, (by, inverse)) in by.zip(inverse).enumerate() {
-            let surplus = (self.moved[k] - (1.0 - part) * self.r[k]) / (all * s);
-            by.iter_mut().zip(&*way).for_each(|(by, way)| *by -= surplus * way);
-            let short = ((1.0 - part) * self.step[k] - self.next[k]) / along;
-            inverse.iter_mut().zip(&self.row).for_each(|(h, r)| *h += short * r);
-        }
+        add_outer(&mut self.by, &self.surplus, way);
+        add_outer(&mut self.inverse, &self.short, &self.row);
     }
-}
-
-/// Inverts the matrix `a` of `n` rows in place; false where it is singular. `pivots` and `row` are scratch.
-fn invert(a: &mut [f64], n: usize, pivots: &mut [usize], row: &mut [f64]) -> bool {
-    for k in 0..n {
-        let p = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
-        pivots[k] = p;
-        if p != k {
-            let (top, bottom) = a.split_at_mut(p * n);
-            top[k * n..][..n].swap_with_slice(&mut bottom[..n]);
-        }
-        let per = 1.0 / a[k * n + k];
-        if !per.is_finite() {
-            return false;
-        }
-        a[k * n + k] = 1.0;
-        a[k * n..][..n].iter_mut().for_each(|x| *x *= per);
-        row.copy_from_slice(&a[k * n..][..n]);
-        for (i, other) in a.chunks_exact_mut(n).enumerate() {
-            let factor = other[k];
-            if i == k || factor == 0.0 {
-                continue;
-            }
-            other[k] = 0.0;
-            other.iter_mut().zip(&*row).for_each(|(x, r)| *x -= factor * r);
-        }
-    }
-    for k in (0..n).rev() {
-        if pivots[k] != k {
-            a.chunks_exact_mut(n).for_each(|row| row.swap(k, pivots[k]));
-        }
-    }
-    true
 }
 
 /// Largest component over its accuracy.
@@ -303,11 +272,4 @@ fn size(step: &[f64], accuracy: &[f64]) -> f64 {
         .zip(accuracy)
         .map(|(d, a)| (d / a).abs())
         .fold(0.0, |a, b| if b.is_nan() { b } else { a.max(b) })
-}
-
-/// `out = a x`, `a` square.
-fn times(a: &[f64], x: &[f64], out: &mut [f64]) {
-    for (out, row) in out.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
-        *out = dot(row, x);
-    }
 }
