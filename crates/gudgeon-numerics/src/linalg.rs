@@ -3,6 +3,7 @@
 //! Factorisations are in place and allocate nothing; a singular matrix is an error, never a NaN in the solution.
 
 mod banded;
+pub(crate) mod columns;
 mod complex;
 mod complex_lu;
 mod dense;

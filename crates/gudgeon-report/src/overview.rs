@@ -127,9 +127,16 @@ fn beyond<'a>(title: &str, what: &'a str) -> Option<&'a str> {
     (!more.is_empty() && !title.to_lowercase().contains(&more.to_lowercase())).then_some(more)
 }
 
+/// A value with its uncertainty, in pieces between which a line may end.
 fn value(v: &ResultValue) -> String {
     let text = v.uncertainty.map_or_else(|| whole(v.value), |_| certain(v.value, v.uncertainty, DIGITS));
-    format!("{text} <span class=\"unit\">{}</span>", esc(&unit(&v.unit)))
+    let unit = esc(&unit(&v.unit));
+    match text.split_once(" ± ") {
+        None => format!("{text} <span class=\"unit\">{unit}</span>"),
+        Some((text, band)) => {
+            format!("<span>{text}</span> <span class=\"unit\">± {band} {unit}</span>")
+        }
+    }
 }
 
 /// Three digits, but every one before the decimal point and those of a whole number.

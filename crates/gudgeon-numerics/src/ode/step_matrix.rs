@@ -2,11 +2,12 @@
 
 use super::core::Core;
 use super::system::OdeSystem;
-use crate::linalg::{lu_factor_weighted, lu_solve, lu_solve_by_products};
+use crate::linalg::{columns, lu_factor_weighted, lu_solve, lu_solve_by_products};
 
 /// Factors of `d I - J`; empty for systems that solve for themselves.
 #[derive(Debug, Clone)]
 pub(crate) struct StepMatrix {
+    /// The matrix, then its factors: by columns from [`columns::WORTH`] unknowns on, by rows below.
     lu: Vec<f64>,
     piv: Vec<usize>,
     weight: Vec<f64>,
@@ -30,28 +31,38 @@ impl StepMatrix {
             return sys.factor(diagonal);
         }
         let n = core.n;
-        for (w, j) in self.lu.iter_mut().zip(&core.jac) {
-            *w = -j;
-        }
-        for i in 0..n {
-            self.lu[i * n + i] += diagonal;
-        }
         self.weight.copy_from_slice(&core.weight);
-        let factored = lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok();
+        let (weight, piv) = (&mut self.weight, &mut self.piv);
+        let factored = if n < columns::WORTH {
+            self.lu.iter_mut().zip(&core.jac).for_each(|(w, j)| *w = -j);
+            self.lu.iter_mut().step_by(n + 1).for_each(|w| *w += diagonal);
+            lu_factor_weighted(&mut self.lu, n, piv, Some(weight))
+        } else {
+            for (k, column) in self.lu.chunks_exact_mut(n).enumerate() {
+                column.iter_mut().zip(core.jac[k..].iter().step_by(n)).for_each(|(w, j)| *w = -j);
+                column[k] += diagonal;
+            }
+            columns::factor(&mut self.lu, n, piv, weight)
+        };
         for (i, inverse) in self.inverse.iter_mut().enumerate() {
             *inverse = 1.0 / self.lu[i * n + i];
         }
-        factored
+        factored.is_ok()
     }
 
     /// Solves `(diagonal I - J) x = b` in place.
     pub(crate) fn solve<S: OdeSystem + ?Sized>(&self, core: &Core, sys: &mut S, b: &mut [f64]) {
         if core.structured {
             sys.solve(b);
-        } else if self.inverse.is_empty() {
-            lu_solve(&self.lu, core.n, &self.piv, b);
-        } else {
-            lu_solve_by_products(&self.lu, core.n, &self.piv, &self.inverse, b);
+            return;
+        }
+        let Self { lu, piv, inverse, .. } = self;
+        let n = core.n;
+        match (n < columns::WORTH, inverse.is_empty()) {
+            (true, true) => lu_solve(lu, n, piv, b),
+            (true, false) => lu_solve_by_products(lu, n, piv, inverse, b),
+            (false, true) => columns::solve(lu, n, piv, b, |k, x| x / lu[k * n + k]),
+            (false, false) => columns::solve(lu, n, piv, b, |k, x| x * inverse[k]),
         }
     }
 }

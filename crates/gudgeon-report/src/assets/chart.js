@@ -132,7 +132,8 @@ class Chart {
       s("line", { x1: X(t), x2: X(t), y1: T, y2: bottom, class: "gridline" }, svg);
       s("text", { x: X(t), y: bottom + 15, "text-anchor": "middle", class: "dim" }, svg, tickText(t) + (t + step > hi + 1e-6 ? "°" : ""));
     }
-    const every = (W - L - R) / Math.max(1, span / 180) < 100;
+    // The longest of the names, and half of the one beside it.
+    const every = (W - L - R) / Math.max(1, span / 180) < 130;
     for (const d of deadCentres(lo, hi, this.spec.cycle.four)) {
       s("line", { x1: X(d.t), x2: X(d.t), y1: T, y2: bottom, class: d.name === "firing TDC" ? "firing" : "dead" }, svg);
       const anchor = X(d.t) > W - 60 ? "end" : X(d.t) < L + 40 ? "start" : "middle";
