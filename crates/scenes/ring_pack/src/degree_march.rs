@@ -2,7 +2,7 @@
 //!
 //! At each whole degree the seats follow from the axial balance with the pressures and the film force known there; the
 //! gas network is marched explicitly over the degree with that geometry; then the film of each ring is found at the end
-//! of the degree by bisection between the floor and `solver.limits.thickest_film`, 60 µm in the source, with `dh/dt = (h - h_old)/Δt`. Cycles repeat until the state
+//! of the degree between the floor and `solver.limits.thickest_film`, 60 µm in the source, with `dh/dt = (h - h_old)/Δt`. Cycles repeat until the state
 //! does, or for the number asked.
 
 use gudgeon_core::quantity::{PosRatio, quantity};
@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::closing_film::closing_film;
 use super::marching::{Books, Ended, Steps, refined, refuses, steps, unsettled};
 use super::pack::Pack;
 use super::record::Totals;
@@ -48,8 +49,8 @@ const OWN: Steps = (1, 10);
 
 #[register_model(
     name = "degree_march",
-    summary = "the published scheme: seats decided once per degree, explicit gas steps, films by bisection at its end",
-    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W by bisection between the floor and `limits.thickest_film`",
+    summary = "the published scheme: seats decided once per degree, explicit gas steps, films from their balance at its end",
+    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W between the floor and `limits.thickest_film`",
     validity = "Rings whose seats are decided in steps, or that rest; flooded films. First order in the step.",
     references = ["tomanik1993"],
     example = "steps_per_degree = 1\ngas_steps = 10\n",
@@ -113,7 +114,7 @@ struct Settings {
     tolerance: f64,
 }
 
-/// Interval at which the bisection stops \[m\].
+/// Interval in which a film is known to lie \[m\].
 const RESOLUTION: f64 = 1e-13;
 
 /// Runs the scheme; calls `progress` with the fraction done.
@@ -227,7 +228,7 @@ impl<'a> March<'a> {
         let dt = self.step / pack.omega / f64::from(self.gas_steps);
         for g in 0..self.gas_steps {
             let middle = self.step * (f64::from(g) + 0.5) / f64::from(self.gas_steps);
-            pack.gas_step(pack.cylinder.pressure(theta + middle))?;
+            pack.gas_step(pack.cylinder.pressure(theta + middle), g == 0)?;
             for (m, dm) in pack.gas_state.iter_mut().zip(&pack.at.dm) {
                 *m += dm * dt;
             }
@@ -247,7 +248,7 @@ impl<'a> March<'a> {
         let dt = self.step / pack.omega;
         for (i, h) in self.h.iter_mut().enumerate() {
             let old = *h;
-            *h = bisect(pack, i, old, dt)?;
+            *h = film_of_balance(pack, i, old, dt)?;
             pack.set_place(i, *h, None);
             pack.friction_at(i, (*h - old) / dt)?;
             totals.friction_work[i] += pack.at.rings[i].power * dt;
@@ -278,21 +279,14 @@ fn instant(pack: &mut Pack, theta: f64, h: &[f64]) {
     }
 }
 
-fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64) -> Result<f64, EvalError> {
-    let floor = pack.lowest(i).max(RESOLUTION);
+/// The film of ring `i` whose load is that of the ring.
+fn film_of_balance(pack: &mut Pack, i: usize, old: f64, dt: f64) -> Result<f64, EvalError> {
+    let ends = (pack.lowest(i).max(RESOLUTION), pack.limits.thickest_film);
     let needed = pack.radial_load(i);
     let excess = |p: &mut Pack, h: f64| -> Result<f64, EvalError> {
         p.set_place(i, h, None);
         let solid = p.rings[i].contact.load(h);
         Ok(p.film(i, (h - old) / dt)?.load + solid - needed)
     };
-    if excess(pack, floor)? <= 0.0 {
-        return Ok(floor);
-    }
-    let (mut low, mut high) = (floor, pack.limits.thickest_film);
-    while high - low > RESOLUTION {
-        let mid = 0.5 * (low + high);
-        if excess(pack, mid)? > 0.0 { low = mid } else { high = mid }
-    }
-    Ok(0.5 * (low + high))
+    closing_film(|h| excess(pack, h), ends, old, RESOLUTION)
 }

@@ -9,6 +9,7 @@ pub mod acted;
 pub mod around;
 pub mod assemble;
 pub mod case;
+mod closing_film;
 pub mod contact_line;
 pub mod conventions;
 pub mod degree_march;

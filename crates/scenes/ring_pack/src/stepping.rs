@@ -7,12 +7,13 @@ use super::loads::flank_load;
 use super::pack::Pack;
 
 impl Pack {
-    /// [`Pack::gas`] within explicit gas steps.
+    /// [`Pack::gas`] within explicit gas steps; `moved`: whether a ring or a volume has moved since the step before.
     ///
     /// # Errors
     /// What the gas model refuses: after a step that was too long, a volume that holds less than nothing.
-    pub fn gas_step(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
-        self.gas(Some(p_cylinder)).map_err(|e| {
+    pub fn gas_step(&mut self, p_cylinder: f64, moved: bool) -> Result<(), EvalError> {
+        let found = if moved { self.gas(Some(p_cylinder)) } else { self.gas_standing(p_cylinder) };
+        found.map_err(|e| {
             let advice = "explicit gas steps may be too long for it: raise `solver.gas_steps`";
             EvalError::fatal("as_published", format!("{e}; {advice}"))
         })

@@ -2,7 +2,7 @@
 //!
 //! Per sub-step: kinematics, cylinder pressure (linear between whole degrees), areas and volumes from the positions so
 //! far; `gas_steps` explicit Euler steps of the gas masses, the first with the flows of the pressures so far, which do not know the new
-//! volumes; then ring by ring the film thickness by bisection on the
+//! volumes; then ring by ring the film thickness from the
 //! radial balance with `dh/dt = (h - h_old)/Δt`, and the axial position with the groove damping taken implicitly and
 //! the rings clamped, inelastically, at the flanks. `passes` one-degree passes make a cycle: the listing runs 721.
 //!
@@ -18,6 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::closing_film::closing_film;
 use super::marching::{Books, Ended, Steps, refined, refuses, steps, unsettled};
 use super::pack::Pack;
 use super::record::Totals;
@@ -83,7 +84,7 @@ impl SubstepMarch {
 #[register_model(
     name = "substep_march",
     summary = "the published scheme: mechanics in sub-steps of a crank degree, explicit gas steps inside them",
-    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W by bisection;  m a = F + F_damping(s + v dt + a dt^2/2, v + a dt), \
+    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W;  m a = F + F_damping(s + v dt + a dt^2/2, v + a dt), \
                 clamped at the flanks",
     validity = "Rings that are seated or move as masses between rigid flanks; flooded films. First order in the step; converges to the implicit solution \
                with `clamp = \"inward\"` and `passes = 720`.",
@@ -153,8 +154,8 @@ struct Settings {
     clamp: Clamp,
 }
 
-/// Interval at which the bisection stops \[m\], and its least number of halvings.
-const BISECTION: (f64, u32) = (1e-14, 10);
+/// Interval in which a film is known to lie \[m\].
+const RESOLUTION: f64 = 1e-14;
 
 struct RingState {
     h: f64,
@@ -232,7 +233,8 @@ impl<'a> March<'a> {
                 // The listing computes pressures after the masses: its first flows are those of the pressures so far.
                 swap_volumes(pack, &mut self.volumes);
             }
-            pack.gas_step(p_cyl)?;
+            // Volumes move before the first step and after it.
+            pack.gas_step(p_cyl, g < 2)?;
             if g == 0 {
                 swap_volumes(pack, &mut self.volumes);
             }
@@ -255,7 +257,7 @@ impl<'a> March<'a> {
         }
         for (i, r) in self.rings.iter_mut().enumerate() {
             let old = r.h;
-            r.h = bisect(pack, i, old, dt, (r.s, r.v))?;
+            r.h = film_of_balance(pack, i, old, dt, (r.s, r.v))?;
             pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
             pack.friction_at(i, (r.h - old) / dt)?;
             self.totals.friction_work[i] += pack.at.rings[i].power * dt;
@@ -359,29 +361,17 @@ fn moving(pack: &Pack, i: usize) -> bool {
     pack.rings[i].motion.second_order().is_some()
 }
 
-fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
+/// The film of ring `i` whose load is that of the ring.
+fn film_of_balance(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
     let moving = moving(pack, i);
-    let floor = pack.lowest(i).max(BISECTION.0);
-    let mut high = pack.furthest(i);
-    let mut low = floor;
-    let mut h = old.clamp(low, high);
-    for k in 1..=500 {
+    let ends = (pack.lowest(i).max(RESOLUTION), pack.furthest(i));
+    let excess = |h: f64| -> Result<f64, EvalError> {
         let hdot = (h - old) / dt;
         pack.set_place(i, h, moving.then_some(s));
         let load = pack.radial_load(i) + pack.radial_friction(i, hdot) - pack.rings[i].contact.load(h);
-        let film = pack.film(i, hdot)?;
-        if load >= film.load {
-            high = h
-        } else {
-            low = h
-        }
-        h = 0.5 * (low + high);
-        if high - low <= BISECTION.0 && k > BISECTION.1 {
-            // No balance above the floor: the ring rests on it.
-            return Ok(if low == floor { floor } else { h });
-        }
-    }
-    Err(EvalError::fatal("substep_march", format!("bisection of the film of ring {} did not end", i + 1)))
+        Ok(pack.film(i, hdot)?.load - load)
+    };
+    closing_film(excess, ends, old, RESOLUTION)
 }
 
 /// One step of `m a = F`, damping at the new velocity and position: `v' = v + a Δt`, `s' = s + v Δt + a Δt²/2`.
