@@ -38,9 +38,9 @@ impl StepMatrix {
             self.lu.iter_mut().step_by(n + 1).for_each(|w| *w += diagonal);
             lu_factor_weighted(&mut self.lu, n, piv, Some(weight))
         } else {
-            for (k, column) in self.lu.chunks_exact_mut(n).enumerate() {
-                column.iter_mut().zip(core.jac[k..].iter().step_by(n)).for_each(|(w, j)| *w = -j);
-                column[k] += diagonal;
+            for (i, row) in core.jac[..n * n].chunks_exact(n).enumerate() {
+                self.lu.chunks_exact_mut(n).zip(row).for_each(|(column, j)| column[i] = -j);
+                self.lu[i * n + i] += diagonal;
             }
             columns::factor(&mut self.lu, n, piv, weight)
         };
