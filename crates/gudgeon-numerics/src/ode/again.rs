@@ -3,6 +3,8 @@
 
 /// How many times as many steps as were chosen are taken again: where a part of the machine flutters each cycle divides others.
 const MOST: f64 = 1.1;
+/// Largest distance from the start for which steps were chosen, over what counts as one between cycles, from which they are taken again.
+const NEAR: f64 = 0.05;
 
 /// The steps of the last cycle, and what they were chosen for.
 #[derive(Debug, Default)]
@@ -19,14 +21,18 @@ pub struct Again {
 }
 
 impl Again {
-    /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps for [`super::Options::ends`], or none where these are to be as long as their errors allow. `near` says
-    /// whether `y` is as near to the start of the cycle for which steps were chosen as their taking again asks for.
-    pub fn begin(&mut self, y: &[f64], rtol: f64, near: impl FnOnce(&[f64]) -> bool) -> Vec<f64> {
+    /// Part of its accuracy by which a cycle in the steps of the one before differs from it, measured on packs and pistons.
+    pub const NOISE: f64 = 0.1;
+
+    /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps for [`super::Options::ends`], or none where these are to be as long as their errors allow. `away` tells
+    /// how far `y` is from the start of the cycle for which steps were chosen, over what counts as one between cycles.
+    pub fn begin(&mut self, y: &[f64], rtol: f64, away: impl FnOnce(&[f64]) -> f64) -> Vec<f64> {
         if !self.repeats {
             self.chosen = self.ends.len();
         }
-        self.repeats =
-            self.rtol == rtol && self.ends.len() as f64 <= MOST * self.chosen as f64 && near(&self.start);
+        self.repeats = self.rtol == rtol
+            && self.ends.len() as f64 <= MOST * self.chosen as f64
+            && away(&self.start) <= NEAR;
         let ends = std::mem::take(&mut self.ends);
         if self.repeats {
             return ends;
@@ -45,9 +51,9 @@ impl Again {
         self.ends.pop_if(|end| *end == t);
     }
 
-    /// Whether the last cycle took the steps of the one before.
+    /// How much of its accuracy the last cycle may differ by from one that began next to it: [`Self::NOISE`] in the steps of the one before, all of it in others.
     #[must_use]
-    pub const fn repeats(&self) -> bool {
-        self.repeats
+    pub const fn noise(&self) -> f64 {
+        if self.repeats { Self::NOISE } else { 1.0 }
     }
 }

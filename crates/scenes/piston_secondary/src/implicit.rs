@@ -26,10 +26,6 @@ const ORDER_FIVE: f64 = 2e-4;
 const TIGHT: f64 = 1e-6;
 /// How repeatable a cycle is, in tolerances.
 const ACCURACY: f64 = 0.1;
-/// Largest change of the states since steps were chosen, over what counts as one between cycles, for which they are taken again.
-const NEAR: f64 = 0.05;
-/// Part of its accuracy by which a cycle in the steps of the one before differs from it.
-pub(super) const NOISE_AGAIN: f64 = 0.1;
 
 /// Adaptive L-stable integration with error control.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -178,10 +174,10 @@ impl Method {
     }
 }
 
-/// Whether a cycle from `y` may take the steps of one from `start` again.
-pub(super) fn near(a: &Assembly, start: &[f64], y: &[f64]) -> bool {
+/// How far the states `y` are from `start`, over what counts as one between cycles.
+pub(super) fn away(a: &Assembly, start: &[f64], y: &[f64]) -> f64 {
     let states = a.layout.states.iter().zip(start).zip(y);
-    states.map(|((s, a), b)| (b - a).abs() / s.cycle_scale).fold(0.0, f64::max) <= NEAR
+    states.map(|((s, a), b)| (b - a).abs() / s.cycle_scale).fold(0.0, f64::max)
 }
 
 struct Adaptive {
@@ -206,7 +202,7 @@ impl PistonSolver for Adaptive {
         options.absolute = layout.states.iter().map(|s| !s.relative).collect();
         (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MAX_STEPS);
         options.event_samples = 0;
-        options.ends = self.again.begin(y, options.rtol, |start| near(of.a, start, y));
+        options.ends = self.again.begin(y, options.rtol, |start| away(of.a, start, y));
         if let Some(t) = trajectory.as_deref_mut() {
             t.start(0.0, y);
         }
@@ -219,7 +215,7 @@ impl PistonSolver for Adaptive {
     }
 
     fn noise(&self) -> f64 {
-        if self.again.repeats() { NOISE_AGAIN } else { 1.0 }
+        self.again.noise()
     }
 
     fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {

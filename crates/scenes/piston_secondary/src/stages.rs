@@ -11,7 +11,7 @@ use gudgeon_scene::RunError;
 
 use super::assembly::Assembly;
 use super::equations::{LEAST_GAP, Work};
-use super::implicit::{FIRST_STEP, LARGEST_STEP, MAX_STEPS, NOISE_AGAIN, near};
+use super::implicit::{FIRST_STEP, LARGEST_STEP, MAX_STEPS, away};
 use super::solver::{Accuracy, Cycled, PistonSolver};
 use super::trajectory::{Between, Trajectory};
 use formula::{ESDIRK3, Formula};
@@ -276,7 +276,7 @@ impl PistonSolver for Staged {
         of.a.piston.forget_stages();
         (self.h, self.tried, self.rejected) = (FIRST_STEP, 0, false);
         let tolerance = accuracy.tolerance(self.tolerance);
-        self.ends = self.again.begin(y, tolerance, |start| near(of.a, start, y));
+        self.ends = self.again.begin(y, tolerance, |start| away(of.a, start, y));
         if !self.ends.is_empty() {
             self.h = f64::INFINITY;
         }
@@ -298,7 +298,7 @@ impl PistonSolver for Staged {
     }
 
     fn noise(&self) -> f64 {
-        if self.again.repeats() { NOISE_AGAIN } else { 1.0 }
+        self.again.noise()
     }
 
     fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {

@@ -361,8 +361,7 @@ impl Cycle<'_> {
         }
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
         let mut outcome = Ok(());
-        let near = |start: &[f64]| moved(self.pack, 0..y.len(), start, y) <= NEAR;
-        options.ends = self.again.begin(y, rtol, near);
+        options.ends = self.again.begin(y, rtol, |start| moved(self.pack, 0..y.len(), start, y));
         if let Some(films) = &mut self.films {
             films.waveform.begin_beside();
         }
@@ -524,10 +523,6 @@ const FINEST: f64 = 1e-13;
 /// What counts as one in the distance between the ends of a cycle of films alone, over that in one of the whole pack: of the oil that faces hold, and of the film on the liner. They
 /// take the same steps again, and it is by such amounts that ring 1 runs dry at its upper turning point over a hundred cycles: a tenth of a micrometre on the liner, and a hundredth of the friction.
 const FINER: (f64, f64) = (0.1, 0.02);
-/// Largest change of the states since steps were chosen, over what counts as one between cycles, for which they are taken again.
-const NEAR: f64 = 0.05;
-/// Part of its accuracy by which a cycle in the steps of the one before differs from it, without oil on the liner and with it.
-const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
 const CLOSER: f64 = 3.0;
 /// The same, as it usually is.
@@ -597,12 +592,12 @@ impl CycleMap for Cycle<'_> {
         }
     }
     fn noise(&self) -> f64 {
-        let repeats = match &self.method {
+        match &self.method {
             // With oil that is said by how the map bends.
-            Method::Waveform(w) => w.repeats() && self.pack.oil_pack.is_none(),
-            _ => self.again.repeats(),
-        };
-        if repeats { NOISE_AGAIN } else { 1.0 }
+            Method::Waveform(w) if w.repeats() && self.pack.oil_pack.is_none() => Again::NOISE,
+            Method::Waveform(_) => 1.0,
+            _ => self.again.noise(),
+        }
     }
     fn expect_last(&mut self) {
         // Halves that would still be too far apart then go on.

@@ -3,7 +3,7 @@
 use gudgeon_core::Stopwatch;
 use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Balance, Note};
-use gudgeon_numerics::ode::{IntegrateError, Stats};
+use gudgeon_numerics::ode::{Again, IntegrateError, Stats};
 use gudgeon_numerics::orbit::OrbitOptions;
 use gudgeon_scene::{RunError, Stopped};
 use indexmap::IndexMap;
@@ -11,7 +11,7 @@ use indexmap::IndexMap;
 use super::approach::{Start, approach};
 use super::films_alone::FilmsAlone;
 use super::sampler::liner_table;
-use super::{Cycle, Implicit, NOISE_AGAIN, Pack, RingIntegrator, Taken, Wanted};
+use super::{Cycle, Implicit, Pack, RingIntegrator, Taken, Wanted};
 use crate::error::RingPackError;
 use crate::record::Totals;
 use crate::results;
@@ -84,7 +84,7 @@ pub(super) fn first_states(pack: &mut Pack, start: f64) -> Vec<f64> {
 
 /// Noise of a cycle in halves with oil on the liner, in the steps of the one before.
 pub(super) const fn oil_noise(tolerance: f64) -> f64 {
-    (NOISE_AGAIN * tolerance).max(tolerance.min(CELLS))
+    (Again::NOISE * tolerance).max(tolerance.min(CELLS))
 }
 
 /// Least periodicity with oil on the liner where films do not take the same steps again.
