@@ -6,7 +6,9 @@
   const methods = [...new Set(DATA.points.map((p) => p.method))];
   const marks = ["circle", "square", "triangle", "diamond"];
   const seconds = (v) => (v >= 1 ? sig(v, 3) + " s" : v >= 1e-3 ? sig(v * 1e3, 3) + " ms" : sig(v * 1e6, 3) + " µs");
-  const power = (v) => { const e = Math.round(Math.log10(v)); return Math.abs(v / 10 ** e - 1) < 1e-6 ? "10" + String(e).replace(/[-0-9]/g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻") : sig(v, 1); };
+  const power = (v) => { const e = Math.round(Math.log10(v)); return Math.abs(v / 10 ** e - 1) < 1e-6 ? powerOfTen(e) : sig(v, 1); };
+  // Errors by powers of ten all along an axis, and between them.
+  const error = (v) => { const e = Math.floor(Math.log10(v) + 1e-9), m = Math.round(v / 10 ** e); return m === 1 ? powerOfTen(e) : m + "×" + powerOfTen(e); };
   // What a method costs: its time, and every count that tells settings apart.
   const counts = [...new Set(good.flatMap((p) => Object.keys(p.work)))].filter((n) => n !== "cycles" && new Set(good.map((p) => p.work[n]).filter((v) => v > 0)).size > 1);
   const cyclic = good.some((p) => p.cycles > 1);
@@ -64,7 +66,9 @@
     }
     for (const t of logTicks(x0, x1)) {
       s("line", { x1: X(t), x2: X(t), y1: T, y2: H - B, style: "stroke:var(--grid)" }, svg);
-      s("text", { x: X(t), y: H - B + 16, "text-anchor": "middle", class: "dim" }, svg, power(t));
+      // At the right edge there is no room for half a label.
+      const last = X(t) > W - 24;
+      s("text", { x: last ? W : X(t), y: H - B + 16, "text-anchor": last ? "end" : "middle", class: "dim" }, svg, error(t));
     }
     for (const t of logTicks(y0, y1)) {
       s("line", { x1: L, x2: W - R, y1: Y(t), y2: Y(t), style: "stroke:var(--grid)" }, svg);
@@ -80,6 +84,9 @@
     s("rect", { x: L, y: T, width: W - L - R, height: H - T - B, style: "fill:none;stroke:var(--line)" }, svg);
     s("text", { x: (L + W - R) / 2, y: H - 8, "text-anchor": "middle" }, svg, across);
     s("text", { x: L, y: T - 8, "text-anchor": "start" }, svg, up);
+    // Words beside a mark stand below those of another one at the same place.
+    const words = [];
+    const below = (px, py) => { const n = words.filter(([x, y]) => Math.abs(x - px) < 60 && Math.abs(y - py) < 12).length; words.push([px, py]); return 24 * n; };
     methods.forEach((m, i) => {
       const own = points.filter((p) => p.method === m);
       if (!own.length) return;
@@ -89,7 +96,7 @@
         if (p.is_default) {
           s("circle", { cx: px, cy: py, r: 10, style: `fill:none;stroke:${color(i)};stroke-width:2` }, svg);
           const left = px > W - 170;
-          s("text", { x: px + (left ? -14 : 14), y: py - 8, "text-anchor": left ? "end" : "start", style: "paint-order:stroke;stroke:var(--bg);stroke-width:4px" }, svg, p.setting);
+          s("text", { x: px + (left ? -14 : 14), y: py - 8 + below(px, py), "text-anchor": left ? "end" : "start", style: "paint-order:stroke;stroke:var(--bg);stroke-width:4px" }, svg, p.setting);
         }
         const g = mark(svg, marks[i % 4], px, py, 5, color(i));
         s("title", {}, g, text(p));
@@ -107,7 +114,7 @@
   asked.append(chart({
     title: h("h3", {}, "Achieved error over the one that was asked for"),
     points: good.filter((p) => p.asked > 0 && p.achieved > 0),
-    x: (p) => p.asked, y: (p) => p.achieved, across: "asked tolerance", up: "achieved error", tick: power,
+    x: (p) => p.asked, y: (p) => p.achieved, across: "asked tolerance", up: "achieved error", tick: error,
     text: (p) => `${p.method}, ${p.setting}: ${sig(p.achieved, 2)}, ${sig(p.achieved / p.asked, 2)} times what was asked`,
     band: [[1, "as asked"], [10, "ten times"]],
   }));

@@ -33,6 +33,9 @@ const color = (i) => "var(--c" + (((i % 8) + 8) % 8) + ")";
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
 const isNumber = (x) => typeof x === "number" && isFinite(x);
 
+function powerOfTen(e) {
+  return "10" + String(e).replace(/[-0-9]/g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻");
+}
 // A number with n significant digits, with a true minus sign.
 function sig(x, n) {
   n = n || 4;
@@ -42,13 +45,14 @@ function sig(x, n) {
   let t;
   if (e < -4 || e > 6) {
     const [m, p] = x.toExponential(n - 1).split("e");
-    t = m + "×10" + p.replace("+", "").replace(/[-0-9]/g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻");
+    t = m + "×" + powerOfTen(+p);
   } else t = x.toFixed(Math.max(0, n - 1 - e));
   return t.replace(/-/g, "−");
 }
 function tickText(x) {
   const a = Math.abs(x);
-  if (a !== 0 && (a >= 1e6 || a < 1e-4)) return sig(x, 1);
+  // As many digits as it has: steps of 2.5 are among them.
+  if (a !== 0 && (a >= 1e6 || a < 1e-4)) return sig(x, [1, 2, 3].find((n) => Math.abs(x.toPrecision(n) / x - 1) < 1e-6) || 4);
   return String(+x.toPrecision(10)).replace("-", "−");
 }
 
