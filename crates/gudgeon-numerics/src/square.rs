@@ -1,4 +1,5 @@
-//! Small square matrices, row-major, of a size that is known when a kernel begins: for the few unknowns of a stage loops of known length take a third of the instructions.
+//! Small square matrices, row-major, of a size that is known when a kernel begins: loops of known length take a quarter off what Newton's
+//! method for the few unknowns of a stage costs beside its residuals.
 
 use crate::linalg::dot;
 

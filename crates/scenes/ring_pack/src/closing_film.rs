@@ -3,10 +3,11 @@
 use gudgeon_core::EvalError;
 use gudgeon_numerics::roots::{RootError, itp};
 
-/// First stride of the walk to a bracket, over the film before; how far it goes beyond where a secant points, and how much longer it becomes at most.
+/// First stride of the walk to a bracket, over the film before; how far it goes beyond where a secant points, and how much longer it becomes at least and at most: where a
+/// load fades out secants point next to where they are, for ever.
 const FIRST: f64 = 1e-3;
 const BEYOND: f64 = 1.1;
-const LONGER: f64 = 8.0;
+const LONGER: (f64, f64) = (2.0, 8.0);
 
 /// Film thickness \[m\] between `floor` and `most` at which `excess`, what film and contact carry more than the ring asks for, falls through zero: `floor` where it is
 /// not above zero there, `most` where it is still above zero there; known to `within`.
@@ -36,7 +37,8 @@ pub fn closing_film(
             break between(excess, (last.min(next), last.max(next)), within);
         }
         let newton = BEYOND * (now * (next - last) / (now - before)).abs();
-        stride = if newton.is_finite() { newton.clamp(stride, LONGER * stride) } else { LONGER * stride };
+        let (least, longest) = (LONGER.0 * stride, LONGER.1 * stride);
+        stride = if newton.is_finite() { newton.clamp(least, longest) } else { longest };
         (last, before) = (next, now);
     }
 }
@@ -85,6 +87,18 @@ mod tests {
             // Bisection takes 31 from anywhere.
             assert!(count <= most_evaluations, "{count} evaluations from {old:e}");
         }
+    }
+
+    /// Doubled strides are through sixty micrometres after sixteen.
+    #[test]
+    fn a_load_that_fades_out_ends_the_walk_soon() {
+        let mut count = 0;
+        let excess = |h: f64| {
+            count += 1;
+            Ok((-h / 1e-7).exp())
+        };
+        let h = closing_film(excess, (1e-8, 6e-5), 1e-6, 1e-13).unwrap();
+        assert!(h == 6e-5 && count <= 18, "{h:e} after {count}");
     }
 
     #[test]
