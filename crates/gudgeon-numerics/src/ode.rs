@@ -43,7 +43,7 @@ pub use again::Again;
 pub(crate) use check::{Shape, check};
 pub(crate) use core::{Core, End, non_finite};
 pub(crate) use dense::Interpolant;
-pub(crate) use difference::difference;
+pub(crate) use difference::{all_finite, difference};
 pub(crate) use driver::{Scheme, Trial, drive};
 pub use integrator::{Flow, Integrator, StepView};
 pub use options::{IntegrateError, Options, Stats};

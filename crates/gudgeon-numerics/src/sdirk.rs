@@ -8,7 +8,7 @@ use crate::EvalError;
 use crate::elementary;
 use crate::ode::{
     Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stage, Stats, StepView,
-    Trial, drive, larger, non_finite,
+    Trial, all_finite, drive, larger, non_finite,
 };
 
 /// Alexander's method of order 2, and the work arrays for systems of one size.
@@ -30,7 +30,8 @@ pub struct Sdirk {
     /// The state that the rates at the start belong to.
     start: Vec<f64>,
     base: Vec<f64>,
-    /// Errors admitted in the stages.
+    /// Relative errors admitted in a step, and errors admitted in its stages.
+    relative: Vec<f64>,
     accuracy: Vec<f64>,
     /// Quadratures that an invariant ties to states.
     tied: Vec<bool>,
@@ -63,6 +64,7 @@ impl Sdirk {
             k: [k(), k(), k()],
             start: vec![f64::NAN; dim],
             base: vec![0.0; dim],
+            relative: vec![0.0; dim],
             accuracy: vec![0.0; dim],
             tied: vec![false; quad_dim],
             judged: false,
@@ -80,8 +82,9 @@ impl Sdirk {
         }
         let te = self.core.clamp_time(t);
         self.core.set_tolerances(sys, te, opts);
-        for i in 0..n {
-            self.accuracy[i] = STAGES * (self.core.atol[i] + opts.relative(i) * self.core.x0[i].abs());
+        let admitted = self.core.atol.iter().zip(&self.relative).zip(&self.core.x0);
+        for (accuracy, ((atol, relative), x0)) in self.accuracy.iter_mut().zip(admitted) {
+            *accuracy = STAGES * (atol + relative * x0.abs());
         }
         self.tied.fill(false);
         for term in sys.invariants().iter().flat_map(|v| &v.terms).filter(|term| term.0 >= n) {
@@ -116,61 +119,66 @@ impl Sdirk {
         for invariant in sys.invariants() {
             k[invariant.pivot] = invariant.pivot_value(|row| k[row]);
         }
-        if k.iter().all(|k| k.is_finite()) { Ok(()) } else { Err(non_finite()) }
+        if all_finite(k) { Ok(()) } else { Err(non_finite()) }
     }
 
     /// The end of the step in `x1`, and the error norm.
-    fn finish(&mut self, h: f64, opts: &Options) -> f64 {
+    fn finish(&mut self, h: f64) -> f64 {
         let n = self.core.n;
         self.core.x1[..n].copy_from_slice(&self.core.y_tmp[..n]);
-        for (r, tied) in (n..self.core.m).zip(&self.tied) {
+        let rates = of_each(self.k.each_ref().map(|k| &k[n..]));
+        let quadratures = self.core.x1[n..].iter_mut().zip(&self.core.x0[n..]).zip(&self.tied);
+        for (((q1, q0), tied), rates) in quadratures.zip(rates) {
             // The parabola through the rates adds this to the sum by the weights of the method.
-            let parabola = if *tied { 0.0 } else { self.second(r) * QUADRATURE };
-            self.core.x1[r] = self.core.x0[r] + h * (sum(&WEIGHTS, &self.k, r) + parabola);
+            let parabola = if *tied { 0.0 } else { sum(&SECOND, rates) * QUADRATURE };
+            *q1 = q0 + h * (sum(&WEIGHTS, rates) + parabola);
         }
-        let rates = |i: usize| [0, 1, 2].map(|k: usize| self.k[k][i]);
-        (0..n).map(|i| h * error(rates(i)) / self.core.scale(opts, i)).fold(0.0, larger)
+        let rates = of_each(self.k.each_ref().map(|k| &k[..n]));
+        let admitted = self.core.atol.iter().zip(&self.relative);
+        let ends = self.core.x0.iter().zip(&self.core.x1);
+        let scales = admitted.zip(ends).map(|((a, r), (x0, x1))| a + r * x0.abs().max(x1.abs()));
+        rates.zip(scales).map(|(rates, scale)| h * error(rates) / scale).fold(0.0, larger)
     }
+}
 
-    /// Divided difference of the rates of component `i`, times the square of the step.
-    fn second(&self, i: usize) -> f64 {
-        sum(&SECOND, &self.k, i)
-    }
+/// The rates of each component.
+fn of_each([a, b, c]: [&[f64]; 3]) -> impl Iterator<Item = [f64; 3]> {
+    a.iter().zip(b).zip(c).map(|((a, b), c)| [*a, *b, *c])
 }
 
 /// What the weights of the method lack of an integral, over the divided difference of second order.
 const QUADRATURE: f64 = 1.0 / 3.0 - (1.0 - GAMMA) * GAMMA * GAMMA - GAMMA;
 
-/// A weighted sum of the rates of component `i`.
-fn sum(weights: &[f64; 3], k: &[Vec<f64>; 3], i: usize) -> f64 {
-    weights.iter().zip(k).map(|(w, k)| w * k[i]).sum()
+/// A weighted sum of the rates of a component.
+const fn sum(w: &[f64; 3], rates: [f64; 3]) -> f64 {
+    w[0] * rates[0] + w[1] * rates[1] + w[2] * rates[2]
 }
 
 impl Interpolant for Sdirk {
     fn coefficients(&self, h: f64, c: &mut [Vec<f64>; 3]) {
-        let [first, _, last] = &self.k;
-        let [c0, c1, c2] = c;
+        let ([first, _, last], [c0, c1, c2]) = (&self.k, c);
         c2.clear();
-        c2.resize(self.core.m, 0.0);
-        c0.clear();
-        c1.clear();
-        for i in 0..self.core.m {
-            let d = self.core.x1[i] - self.core.x0[i];
-            let (a, b) = (limited(h * first[i], d), limited(h * last[i], d));
-            c0.push(a - d);
-            c1.push(2.0 * d - a - b);
+        for c in [&mut *c0, &mut *c1, c2] {
+            c.resize(self.core.m, 0.0);
+        }
+        let ends = self.core.x0.iter().zip(&self.core.x1).zip(first.iter().zip(last));
+        for ((c0, c1), ((x0, x1), (first, last))) in c0.iter_mut().zip(c1).zip(ends) {
+            let d = x1 - x0;
+            let (a, b) = (limited(h * first, d), limited(h * last, d));
+            (*c0, *c1) = (a - d, 2.0 * d - a - b);
         }
     }
 }
 
 /// Error of a step over its length, for the rates at its [`PLACES`].
+#[inline]
 #[must_use]
 pub fn error(rates: [f64; 3]) -> f64 {
-    let second: f64 = SECOND.iter().zip(rates).map(|(w, k)| w * k).sum();
-    2.0 * CONSTANT * second
+    2.0 * CONSTANT * sum(&SECOND, rates)
 }
 
 /// Dense output at the part `x` of a step `h` between the values `y` with the rates `f` at its ends.
+#[inline]
 #[must_use]
 pub fn between([y0, y1]: [f64; 2], f: [f64; 2], h: f64, x: f64) -> f64 {
     let d = y1 - y0;
@@ -179,6 +187,7 @@ pub fn between([y0, y1]: [f64; 2], f: [f64; 2], h: f64, x: f64) -> f64 {
 }
 
 /// A slope that makes no cubic overshoot between two values that differ by `d`.
+#[inline]
 fn limited(slope: f64, d: f64) -> f64 {
     if d > 0.0 { slope.clamp(0.0, 3.0 * d) } else { slope.clamp(3.0 * d, 0.0) }
 }
@@ -225,7 +234,7 @@ impl Scheme for Sdirk {
             stats.stages += 1;
             self.stage(sys, i, t, h)?;
         }
-        let error = self.finish(h, opts);
+        let error = self.finish(h);
         if error <= opts.slack {
             self.start.copy_from_slice(&self.core.x1[..self.core.n]);
         }
@@ -246,6 +255,7 @@ impl<S: OdeSystem + ?Sized> Integrator<S> for Sdirk {
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError> {
         self.start.fill(f64::NAN);
+        self.relative.iter_mut().enumerate().for_each(|(i, r)| *r = options.relative(i));
         drive(self, sys, interval, breakpoints, y, q, options, stats, observer)
     }
 }

@@ -47,6 +47,7 @@ fn pivot(column: &[f64], weights: &[f64], k: usize) -> Option<usize> {
 }
 
 /// `to -= factor * column`.
+#[inline]
 fn subtract(to: &mut [f64], factor: f64, column: &[f64]) {
     if factor != 0.0 {
         to.iter_mut().zip(column).for_each(|(x, l)| *x -= factor * l);

@@ -33,11 +33,13 @@ pub struct Options {
 
 impl Options {
     /// Whether `atol` alone counts for state or quadrature `i`.
+    #[inline]
     pub(crate) fn is_absolute(&self, i: usize) -> bool {
         self.absolute.get(i).copied().unwrap_or(false)
     }
 
     /// Relative error of state or quadrature `i`.
+    #[inline]
     pub(crate) fn relative(&self, i: usize) -> f64 {
         if self.is_absolute(i) { 0.0 } else { self.rtol }
     }
