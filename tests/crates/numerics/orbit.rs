@@ -83,6 +83,7 @@ struct Told {
     map: Linear,
     cycles: usize,
     announced: Vec<usize>,
+    near: Option<f64>,
 }
 
 impl CycleMap for Told {
@@ -99,6 +100,26 @@ impl CycleMap for Told {
     fn expect_last(&mut self) {
         self.announced.push(self.cycles + 1);
     }
+    fn begins_near(&self) -> Option<f64> {
+        self.near
+    }
+}
+
+/// A search that begins where one of a like map ended, far enough from the orbit to need two cycles of a map that forgets nearly all in one.
+#[test]
+fn the_second_cycle_from_a_start_near_the_orbit_is_announced_and_no_other() {
+    for (near, announced) in [(Some(f64::INFINITY), vec![2]), (None, Vec::new())] {
+        for seed in 1..=SEEDS {
+            let map = Linear::new(3e-3, 0.0, seed);
+            // Some 2e-4 of the units of the states: what is left after a cycle is less than the accuracy, 3e-6.
+            let mut y: Vec<f64> =
+                map.start.iter().zip(map.fixed.iter()).map(|(y, x)| x + 5e-4 * (y - x)).collect();
+            let mut map = Told { map, cycles: 0, announced: Vec::new(), near };
+            let r = periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
+            assert!(r.converged && r.cycles == 2, "{seed}: {r:?}");
+            assert_eq!(map.announced, announced, "{seed}: {r:?}");
+        }
+    }
 }
 
 /// What is gathered in a cycle that is announced costs less than a cycle, so that announcements pay when more of them come true than not. Of 199 searches of a map with eight
@@ -109,7 +130,7 @@ fn announced_cycles_are_the_last_ones_more_often_than_not() {
     for seed in 1..=SEEDS {
         let map = Linear::new(0.8, 1.0, seed);
         let mut y = map.start.clone();
-        let mut map = Told { map, cycles: 0, announced: Vec::new() };
+        let mut map = Told { map, cycles: 0, announced: Vec::new(), near: None };
         let r = periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
         assert_eq!(r.cycles, map.cycles);
         let last = usize::from(map.announced.last() == Some(&r.cycles));
@@ -128,7 +149,7 @@ fn a_residual_that_turns_and_does_not_fall_announces_nothing() {
         // Noise of ten times the tolerance.
         let map = Linear::new(0.3, 300.0, seed);
         let mut y = map.start.clone();
-        let mut map = Told { map, cycles: 0, announced: Vec::new() };
+        let mut map = Told { map, cycles: 0, announced: Vec::new(), near: None };
         periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
         announced += map.announced.len();
         cycles += map.cycles;

@@ -27,18 +27,23 @@ impl Again {
     /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps for [`super::Options::ends`], or none where these are to be as long as their errors allow. `away` tells
     /// how far `y` is from the start of the cycle for which steps were chosen, over what counts as one between cycles.
     pub fn begin(&mut self, y: &[f64], rtol: f64, away: impl FnOnce(&[f64]) -> f64) -> Vec<f64> {
+        let serves = self.serves(rtol, away);
         if !self.repeats {
             self.chosen = self.ends.len();
         }
-        self.repeats = self.rtol == rtol
-            && self.ends.len() as f64 <= MOST * self.chosen as f64
-            && away(&self.start) <= NEAR;
+        self.repeats = serves;
         let ends = std::mem::take(&mut self.ends);
         if self.repeats {
             return ends;
         }
         (self.start, self.rtol) = (y.to_vec(), rtol);
         Vec::new()
+    }
+
+    /// Whether a cycle of accuracy `rtol` would take the steps of the last one again; `away` as for [`Self::begin`].
+    pub fn serves(&self, rtol: f64, away: impl FnOnce(&[f64]) -> f64) -> bool {
+        let chosen = if self.repeats { self.chosen } else { self.ends.len() };
+        self.rtol == rtol && self.ends.len() as f64 <= MOST * chosen as f64 && away(&self.start) <= NEAR
     }
 
     /// A step ends at `t`.
@@ -55,5 +60,28 @@ impl Again {
     #[must_use]
     pub const fn noise(&self) -> f64 {
         if self.repeats { Self::NOISE } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cycle of `steps` steps from `y`; how many of them were taken again.
+    fn cycle(again: &mut Again, y: f64, steps: usize) -> usize {
+        let away = |start: &[f64]| (start.first().map_or(f64::INFINITY, |s| s - y)).abs();
+        let (serves, ends) = (again.serves(1e-3, away), again.begin(&[y], 1e-3, away));
+        assert_eq!(serves, !ends.is_empty());
+        (0..steps).for_each(|k| again.step(k as f64));
+        ends.len()
+    }
+
+    #[test]
+    fn steps_serve_near_their_start_until_a_tenth_are_added() {
+        let mut again = Again::default();
+        let taken = [(1.0, 100), (1.04, 104), (1.02, 111), (1.0, 100), (1.06, 100), (1.1, 90)]
+            .map(|(y, steps)| cycle(&mut again, y, steps));
+        // The first has none before it; the fourth follows one with more than a tenth more steps than were chosen; the fifth begins farther than a twentieth away.
+        assert_eq!(taken, [0, 100, 104, 0, 0, 100]);
     }
 }

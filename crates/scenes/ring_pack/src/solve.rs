@@ -28,7 +28,7 @@ pub struct Solved {
     pub retreats: Vec<Event>,
     /// Work.
     pub report: SolverReport,
-    /// Wall time of the solver \[s\], recording excluded.
+    /// Wall time of the solver \[s\], with the cycle that is measured; rows of the series are made after it.
     pub seconds: f64,
 }
 

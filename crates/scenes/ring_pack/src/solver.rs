@@ -89,7 +89,7 @@ pub struct Solution {
     pub notes: Vec<Note>,
     /// Rings that left the liner.
     pub retreats: Vec<Event>,
-    /// Wall time \[s\].
+    /// Wall time \[s\], with the cycle that is measured.
     pub seconds: f64,
 }
 

@@ -134,24 +134,24 @@ fn search(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     start: f64,
 ) -> Result<Solution, RunError> {
-    let begin = Stopwatch::start();
+    let clock = Stopwatch::start();
     let discrete = pack.decision_interval().is_some();
     let tolerance = s.tolerance.si();
     let mut options = orbit_options(s, pack);
     options.max_cycles -= begun.coarse;
-    let before = begun.seconds;
+    let led = begun.seconds;
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let mut y = cycle.begin_at(begun);
     let turns = cycle.come_near(&mut y, &options)?;
     options.max_cycles = options.max_cycles.saturating_sub(turns);
     let closed = cycle.close(&mut y, &options);
-    let seconds = before + begin.seconds();
     let (mut counters, cycles, coarse) =
         (counters(&cycle.stats), cycle.done, cycle.coarse + cycle.films_cycles);
     let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
     if s.integrator == RingIntegrator::Waveform && apart {
+        let led = led + clock.seconds();
         let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
-        solution.seconds += seconds;
+        solution.seconds += led;
         return Ok(solution);
     }
     let mut report = closed?;
@@ -189,7 +189,8 @@ fn search(
         cycles: report.cycle_equivalents + turns as f64,
         counters,
         notes,
-        seconds,
+        // With the cycle that is recorded, whether the search had foreseen that or not.
+        seconds: led + clock.seconds(),
     })
 }
 
