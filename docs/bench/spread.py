@@ -37,7 +37,7 @@ def packs(count, oil):
 
 
 def run(command, changes):
-    """Results, counters and the time of the search [s]."""
+    """Results, counters and the time of the search and its record [s]."""
     with tempfile.TemporaryDirectory() as out:
         sets = [word for change in changes for word in ("--set", change)]
         subprocess.run([*command, "run", str(CASE), "--out", out, *sets], cwd=ROOT, capture_output=True, check=True)
@@ -62,7 +62,7 @@ def main():
     given = parser.parse_args()
     command = [given.binary] if given.binary else ["cargo", "run", "--release", "--quiet", "--"]
     exact = [run(command, [*pack, *REFERENCE])[0] for pack in packs(given.packs, given.oil)]
-    print("| tolerance | blow-by | friction | land 2 | cycles | steps a cycle | ms a cycle |\n|---:|---:|---:|---:|---:|---:|---:|")
+    print("| tolerance | blow-by | friction | land 2 | cycles | steps a cycle | ms a run |\n|---:|---:|---:|---:|---:|---:|---:|")
     for tolerance in given.tolerances:
         own = [f"solver.integrator={given.integrator}", f"solver.tolerance={tolerance}", f"solver.periodicity={min(float(tolerance), 1e-3):g}"]
         runs = [run(command, [*pack, *own]) for pack in packs(given.packs, given.oil)]
@@ -71,7 +71,7 @@ def main():
         steps = sum(counters["steps"] + counters["rejected"] for _, counters, _ in runs)
         parts = " | ".join(spread(each) for each in zip(*errors))
         time = 1e3 * sum(seconds for _, _, seconds in runs)
-        print(f"| {tolerance} | {parts} | {cycles / given.packs:.1f} | {steps / cycles:.0f} | {time / cycles:.1f} |", flush=True)
+        print(f"| {tolerance} | {parts} | {cycles / given.packs:.1f} | {steps / cycles:.0f} | {time / given.packs:.1f} |", flush=True)
 
 
 if __name__ == "__main__":
