@@ -178,8 +178,8 @@ const SETTLED: f64 = 3.0;
 const PROMISED: f64 = 0.5;
 /// Steps of the acceleration from which on the fall of a residual says what the next will be: the first leaves an arbitrary start, but not one near the orbit.
 const SETTLES: [usize; 2] = [2, 0];
-/// Fall of the residual after the first cycle from a start near the orbit, of which nothing is seen yet: the median of 25 ring packs without oil, nine in ten of which are below three times that. A cycle that is
-/// taken for the last in vain costs half of one more, and one that is the last and was not taken for it a whole one.
+/// Fall of the residual after the first cycle from a start near the orbit, of which nothing is seen yet: about the median of 25 ring packs without oil, the largest of which is 2e-2. To measure a
+/// cycle in vain costs half of one more, and not to measure the last one a whole one.
 const FALLS: f64 = 5e-3;
 /// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
 /// differently can make it noisier than it was asked to be.
