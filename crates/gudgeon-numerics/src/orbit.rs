@@ -407,10 +407,12 @@ impl Search {
             let (correction, rest) = explain(&state.secants[state.trusted..], &r, FRESH);
             let noise = map.noise() * options.accuracy;
             // Of a residual that turned no mode tells the decay: it fell by as much as it is smaller, if it is.
-            let fall = match (near && k == 0, ratio > 0.0) {
-                (true, _) => FALLS,
-                (false, true) => ratio,
-                (false, false) => residual / state.last,
+            let fall = if near && k == 0 {
+                FALLS
+            } else if ratio > 0.0 {
+                ratio
+            } else {
+                residual / state.last
             };
             let explained = (correction.amax(), rest.amax());
             let estimate = self.judge(&mut state, residual, explained, ratio, noise);

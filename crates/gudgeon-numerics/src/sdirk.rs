@@ -30,8 +30,7 @@ pub struct Sdirk {
     /// The state that the rates at the start belong to.
     start: Vec<f64>,
     base: Vec<f64>,
-    /// Relative errors admitted in a step, and errors admitted in its stages.
-    relative: Vec<f64>,
+    /// Errors admitted in the stages.
     accuracy: Vec<f64>,
     /// Quadratures that an invariant ties to states.
     tied: Vec<bool>,
@@ -64,7 +63,6 @@ impl Sdirk {
             k: [k(), k(), k()],
             start: vec![f64::NAN; dim],
             base: vec![0.0; dim],
-            relative: vec![0.0; dim],
             accuracy: vec![0.0; dim],
             tied: vec![false; quad_dim],
             judged: false,
@@ -82,9 +80,8 @@ impl Sdirk {
         }
         let te = self.core.clamp_time(t);
         self.core.set_tolerances(sys, te, opts);
-        let admitted = self.core.atol.iter().zip(&self.relative).zip(&self.core.x0);
-        for (accuracy, ((atol, relative), x0)) in self.accuracy.iter_mut().zip(admitted) {
-            *accuracy = STAGES * (atol + relative * x0.abs());
+        for (i, (atol, x0)) in self.core.atol.iter().zip(&self.core.x0).enumerate() {
+            self.accuracy[i] = STAGES * (atol + opts.relative(i) * x0.abs());
         }
         self.tied.fill(false);
         for term in sys.invariants().iter().flat_map(|v| &v.terms).filter(|term| term.0 >= n) {
@@ -123,7 +120,7 @@ impl Sdirk {
     }
 
     /// The end of the step in `x1`, and the error norm.
-    fn finish(&mut self, h: f64) -> f64 {
+    fn finish(&mut self, h: f64, opts: &Options) -> f64 {
         let n = self.core.n;
         self.core.x1[..n].copy_from_slice(&self.core.y_tmp[..n]);
         let rates = of_each(self.k.each_ref().map(|k| &k[n..]));
@@ -134,10 +131,8 @@ impl Sdirk {
             *q1 = q0 + h * (sum(&WEIGHTS, rates) + parabola);
         }
         let rates = of_each(self.k.each_ref().map(|k| &k[..n]));
-        let admitted = self.core.atol.iter().zip(&self.relative);
-        let ends = self.core.x0.iter().zip(&self.core.x1);
-        let scales = admitted.zip(ends).map(|((a, r), (x0, x1))| a + r * x0.abs().max(x1.abs()));
-        rates.zip(scales).map(|(rates, scale)| h * error(rates) / scale).fold(0.0, larger)
+        let errors = rates.enumerate().map(|(i, rates)| h * error(rates) / self.core.scale(opts, i));
+        errors.fold(0.0, larger)
     }
 }
 
@@ -234,7 +229,7 @@ impl Scheme for Sdirk {
             stats.stages += 1;
             self.stage(sys, i, t, h)?;
         }
-        let error = self.finish(h);
+        let error = self.finish(h, opts);
         if error <= opts.slack {
             self.start.copy_from_slice(&self.core.x1[..self.core.n]);
         }
@@ -255,7 +250,6 @@ impl<S: OdeSystem + ?Sized> Integrator<S> for Sdirk {
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError> {
         self.start.fill(f64::NAN);
-        self.relative.iter_mut().enumerate().for_each(|(i, r)| *r = options.relative(i));
         drive(self, sys, interval, breakpoints, y, q, options, stats, observer)
     }
 }
