@@ -206,127 +206,143 @@ pub struct Known {
     pub from: f64,
     /// Where the root is expected.
     pub guess: f64,
-    /// Derivative expected there; zero or less: unknown.
-    pub slope: f64,
+    /// What the derivative is expected to be there beyond the part that the function tells; none: unknown.
+    pub rest: Option<f64>,
     /// Longest step.
     pub reach: f64,
     /// Error admitted.
     pub tol: f64,
 }
 
-/// A root at which the function was evaluated last, and its derivative there by differences.
+/// A root, and what is known of the derivative there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found {
-    /// The root, within the error admitted.
+    /// The root, within the error admitted. So is where the function was evaluated last.
     pub x: f64,
-    /// The derivative.
-    pub slope: f64,
+    /// The derivative beyond the part that the function tells, for the next search; none where it is not known.
+    pub rest: Option<f64>,
 }
 
 /// Steps of the secant method before a search begins anew with a bracket.
 const SECANTS: usize = 6;
-/// Part of the error admitted within which a step by a derivative from before ends at the root.
-const STALE: f64 = 0.1;
 /// Steps of the walk to a bracket, and within it.
 const WALK: usize = 200;
 
 /// A root of a function that rises through it, by secants from a guess; the first one beyond [`Known::from`] where they fail.
 ///
-/// Made for functions that are solved again and again with little changed: two to three evaluations as a rule. The function is evaluated at the answer
-/// last, so that what it leaves behind belongs to the answer.
+/// Made for functions that are solved again and again with little changed: one to three evaluations as a rule. The function tells its value and what it knows of its
+/// derivative, the part that changes most; secants find the rest, which is taken over from one search to the next. What the function leaves behind at its last evaluation belongs to a
+/// point that is the root within the error admitted; the root itself is one step nearer.
 ///
 /// # Errors
 /// [`RootError::NoConvergence`]; the function's own errors come back as [`RootError::Function`].
-pub fn first_root<E>(mut f: impl FnMut(f64) -> Result<f64, E>, known: Known) -> Result<Found, RootError<E>> {
-    let mut eval = |x: f64| f(x).map_err(RootError::Function);
-    if let Some(found) = secants(&mut eval, known)? {
+pub fn first_root<E>(
+    mut f: impl FnMut(f64) -> Result<(f64, f64), E>,
+    known: Known,
+) -> Result<Found, RootError<E>> {
+    let mut look = |x: f64| {
+        let (f, told) = f(x).map_err(RootError::Function)?;
+        Ok(Look { x, f, told })
+    };
+    if let Some(found) = secants(&mut look, known)? {
         return Ok(found);
     }
-    let (lo, hi) = walk(&mut eval, known)?;
-    between(&mut eval, lo, hi, known.tol)
+    let (from, to) = walk(&mut look, known)?;
+    between(&mut look, from, to, known.tol)
+}
+
+/// A function at a point, and the part of its derivative that it tells.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    x: f64,
+    f: f64,
+    told: f64,
+}
+
+impl Look {
+    /// The derivative between here and another point.
+    fn secant(&self, to: &Self) -> f64 {
+        (to.f - self.f) / (to.x - self.x)
+    }
+
+    /// What the function does not tell of its derivative between here and another point, the secant of which is that of the middle; none where it does not rise.
+    fn rest(&self, to: &Self) -> Option<f64> {
+        let slope = self.secant(to);
+        (slope > 0.0).then(|| slope - 0.5 * (self.told + to.told))
+    }
 }
 
 /// The root by secants from the guess, if they settle.
 fn secants<E>(
-    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
+    look: &mut impl FnMut(f64) -> Result<Look, RootError<E>>,
     known: Known,
 ) -> Result<Option<Found>, RootError<E>> {
-    if known.slope <= 0.0 {
-        return Ok(None);
-    }
-    let (mut x, mut slope) = (known.guess, known.slope);
-    let mut fx = eval(x)?;
-    for k in 0..SECANTS {
-        let step = -fx / slope;
-        if step.abs() <= if k == 0 { STALE * known.tol } else { known.tol } {
-            return Ok(Some(Found { x, slope }));
-        }
-        if step.is_nan() || step.abs() > known.reach {
+    let Some(mut rest) = known.rest else { return Ok(None) };
+    let mut at = look(known.guess)?;
+    for _ in 0..SECANTS {
+        let slope = at.told + rest;
+        let step = -at.f / slope;
+        if slope <= 0.0 || step.is_nan() || step.abs() > known.reach {
             return Ok(None);
         }
-        let next = x + step;
-        let fnext = eval(next)?;
-        let seen = (fnext - fx) / (next - x);
-        (x, fx) = (next, fnext);
-        if seen.is_nan() || seen <= 0.0 {
-            return Ok(None);
+        let x = at.x + step;
+        if step.abs() <= known.tol {
+            return Ok(Some(Found { x, rest: Some(rest) }));
         }
-        slope = seen;
+        let next = look(x)?;
+        let Some(seen) = at.rest(&next) else { return Ok(None) };
+        (rest, at) = (seen, next);
     }
     Ok(None)
 }
 
 /// Two points beside each other, from `known.from` on in the direction in which the function asks to go, between which it changes its sign.
 fn walk<E>(
-    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
+    look: &mut impl FnMut(f64) -> Result<Look, RootError<E>>,
     known: Known,
-) -> Result<([f64; 2], [f64; 2]), RootError<E>> {
-    let mut last = [known.from, eval(known.from)?];
-    if last[1] == 0.0 {
+) -> Result<(Look, Look), RootError<E>> {
+    let mut last = look(known.from)?;
+    if last.f == 0.0 {
         return Ok((last, last));
     }
-    let away = -last[1].signum();
-    let mut stride = if known.slope > 0.0 { (last[1] / known.slope).abs() } else { last[1].abs() };
+    let away = -last.f.signum();
+    let slope = known.rest.map_or(0.0, |rest| last.told + rest);
+    let mut stride = if slope > 0.0 { (last.f / slope).abs() } else { last.f.abs() };
     for _ in 0..WALK {
         let step = stride.clamp(known.tol, known.reach);
-        let x = last[0] + away * step;
-        let next = [x, eval(x)?];
-        if next[1] * last[1] <= 0.0 {
+        let next = look(last.x + away * step)?;
+        if next.f * last.f <= 0.0 {
             return Ok((last, next));
         }
-        let slope = (next[1] - last[1]) / (next[0] - last[0]);
-        let newton = if slope > 0.0 { 1.1 * (next[1] / slope).abs() } else { f64::INFINITY };
+        let slope = last.secant(&next);
+        let newton = if slope > 0.0 { 1.1 * (next.f / slope).abs() } else { f64::INFINITY };
         (stride, last) = (newton.min(4.0 * step), next);
     }
-    Err(RootError::NoConvergence { iterations: WALK as u32, lo: known.from, hi: last[0] })
+    Err(RootError::NoConvergence { iterations: WALK as u32, lo: known.from, hi: last.x })
 }
 
 /// The root between two points of different sign: false position with halved weights (Illinois), every fourth step a bisection.
 fn between<E>(
-    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
-    mut a: [f64; 2],
-    mut b: [f64; 2],
+    look: &mut impl FnMut(f64) -> Result<Look, RootError<E>>,
+    mut a: Look,
+    mut b: Look,
     tol: f64,
 ) -> Result<Found, RootError<E>> {
-    let slope = |a: [f64; 2], b: [f64; 2]| ((b[1] - a[1]) / (b[0] - a[0])).max(0.0);
-    if b[1] == 0.0 {
-        return Ok(Found { x: b[0], slope: slope(a, b) });
+    if b.f == 0.0 {
+        return Ok(Found { x: b.x, rest: a.rest(&b) });
     }
     for k in 1..=WALK {
-        let (was, span) = (b, b[0] - a[0]);
-        let secant = a[0] - a[1] * span / (b[1] - a[1]);
-        let x = if k.is_multiple_of(4) { a[0] + 0.5 * span } else { secant };
-        let next = [x, eval(x)?];
-        let steep = slope(was, next);
-        if next[1] * b[1] < 0.0 {
-            a = b;
+        let (was, span) = (b, b.x - a.x);
+        let secant = a.x - a.f * span / (b.f - a.f);
+        b = look(if k.is_multiple_of(4) { a.x + 0.5 * span } else { secant })?;
+        if b.f * was.f < 0.0 {
+            a = was;
         } else {
-            a[1] *= 0.5;
+            a.f *= 0.5;
         }
-        b = next;
-        if b[1] == 0.0 || (b[0] - a[0]).abs() <= tol {
-            return Ok(Found { x, slope: steep });
+        if b.f == 0.0 || (b.x - a.x).abs() <= tol {
+            return Ok(Found { x: b.x, rest: was.rest(&b) });
         }
     }
-    Err(RootError::NoConvergence { iterations: WALK as u32, lo: a[0], hi: b[0] })
+    Err(RootError::NoConvergence { iterations: WALK as u32, lo: a.x, hi: b.x })
 }

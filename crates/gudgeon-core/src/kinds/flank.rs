@@ -122,6 +122,14 @@ pub trait FlankLaw: Send {
     fn resistance(&self, _oil: &FlankOil, _s: f64, _clearance: f64, _area: f64) -> Option<FlankResistance> {
         None
     }
+
+    /// The force \[N\], and how fast it falls with the velocity \[N s/m\]: 0 where only [`FlankLaw::force`] knows.
+    fn force_and_damping(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> (f64, f64) {
+        match self.resistance(oil, s, clearance, area) {
+            Some(films) => films.force_and_damping(v),
+            None => (self.force(oil, s, v, clearance, area), 0.0),
+        }
+    }
 }
 
 /// Films on one flank that [`FlankResistance`] tells apart: of oil, and of the gas beside it.
@@ -187,8 +195,15 @@ impl FlankResistance {
     #[must_use]
     #[inline]
     pub fn force(&self, v: f64) -> f64 {
-        let resistance = self.at(v)[0];
-        if v.is_sign_negative() { resistance } else { -resistance }
+        self.force_and_damping(v).0
+    }
+
+    /// Force on the ring \[N\] at a velocity \[m/s\], and how fast it falls with that \[N s/m\].
+    #[must_use]
+    #[inline]
+    pub fn force_and_damping(&self, v: f64) -> (f64, f64) {
+        let [resistance, damping, _] = self.at(v);
+        (if v.is_sign_negative() { resistance } else { -resistance }, damping)
     }
 
     /// Resistance at a velocity \[m/s\]: the force against it \[N\], and the first \[N s/m\] and second \[N s²/m²\] derivative of that by the speed `|v|`. The

@@ -43,8 +43,8 @@ pub struct Staged<'a> {
 /// What is known from the last stage.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Before {
-    /// Derivative of the balance by `x`.
-    pub slope: f64,
+    /// Derivative of the balance by `x` beyond that through the velocity.
+    pub rest: Option<f64>,
     /// Whether the ring was off the liner, where its drag counts.
     pub off: bool,
 }
@@ -83,7 +83,7 @@ impl Staged<'_> {
             return Ok(answer);
         }
         if !self.before.off && self.search.is_off(loads.state()) {
-            self.before = Before { off: true, slope: 0.0 };
+            self.before = Before { off: true, rest: None };
             if let Some(answer) = self.free(stage, x, loads)? {
                 return Ok(answer);
             }
@@ -94,7 +94,7 @@ impl Staged<'_> {
         loads.set_thickness(thickness(*x)?)?;
         let response = self.search.rate(loads)?;
         let film = response.film.map_or_else(|| loads.film(response.hdot), Ok)?;
-        let known = Before { slope: 0.0, off: response.limited.drag > 0.0 };
+        let known = Before { rest: None, off: response.limited.drag > 0.0 };
         Ok(Answer { response, film, known })
     }
 
@@ -109,12 +109,14 @@ impl Staged<'_> {
             return Ok(None);
         }
         let mut last = None;
-        let balance =
-            |x: f64| -> Result<f64, EvalError> { Ok(last.insert(self.trial(stage, x, loads)?).lacks) };
+        let balance = |x: f64| -> Result<(f64, f64), EvalError> {
+            let trial = last.insert(self.trial(stage, x, loads)?);
+            Ok((trial.lacks, trial.slope))
+        };
         let known = Known {
             from: stage.base[0],
             guess: *x,
-            slope: self.before.slope,
+            rest: self.before.rest,
             reach: REACH,
             tol: stage.accuracy[0],
         };
@@ -127,8 +129,8 @@ impl Staged<'_> {
         *x = found.x;
         // It stays what it is until the ring is back: with a drag the balance has another slope.
         let off = self.before.off && self.search.is_off(loads.state());
-        let slope = if off == self.before.off { found.slope } else { 0.0 };
-        let known = Before { slope, off };
+        let rest = found.rest.filter(|_| off == self.before.off);
+        let known = Before { rest, off };
         Ok(Some(Answer { response, film, known }))
     }
 
@@ -187,12 +189,13 @@ impl Staged<'_> {
         loads: &mut dyn RadialTrials,
     ) -> Result<Found, EvalError> {
         let per = stage.step * self.per;
-        let balance = |x: f64| -> Result<f64, EvalError> {
+        let balance = |x: f64| -> Result<(f64, f64), EvalError> {
             let h = thickness(x)?;
             loads.set_thickness(h)?;
-            Ok(x - stage.base[0] - per * self.search.rate(loads)?.hdot / h)
+            Ok((x - stage.base[0] - per * self.search.rate(loads)?.hdot / h, 1.0))
         };
-        let known = Known { from: stage.base[0], guess, slope: 1.0, reach: REACH, tol: stage.accuracy[0] };
+        let known =
+            Known { from: stage.base[0], guess, rest: Some(0.0), reach: REACH, tol: stage.accuracy[0] };
         first_root(balance, known).map_err(|e| match e {
             RootError::Function(e) => e,
             e => EvalError::recoverable("radial_motion", e.to_string()),

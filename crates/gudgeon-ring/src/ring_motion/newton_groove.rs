@@ -126,7 +126,7 @@ impl RingMotionSpec for NewtonGroove {
             holding: Holding::new(ctx.mass, unit_speed, ctx.omega),
             forces: RingForces::default(),
             v: 0.0,
-            slope: 0.0,
+            stiffness: None,
         }))
     }
 }
@@ -155,8 +155,8 @@ struct Runtime {
     forces: RingForces,
     /// Velocity \[m/s\] of the last instant.
     v: f64,
-    /// Derivative of the balance of the last stage by the velocity state.
-    slope: f64,
+    /// Derivative of the balance of the last stage by the velocity state beyond that of inertia and damping, over the square of the length of the stage: that by the height.
+    stiffness: Option<f64>,
 }
 
 impl Runtime {
@@ -229,22 +229,26 @@ impl RingMotion for Runtime {
         let per = stage.step / (self.mass * c0 * omega * omega);
         let mut response = RingResponse::default();
         let mut last = forces.place;
-        let balance = |u: f64| -> Result<f64, EvalError> {
+        let balance = |u: f64| -> Result<(f64, f64), EvalError> {
             let height = stage.base[0] + stage.step * u;
             last = place(RingPose::at_height(height * c0, u * c0 * omega, forces.place.clearance));
             let p = &last;
-            let damping = self.damping.force(&p.flank, p.s, p.v, p.clearance, p.flank_area());
+            let (damping, falls) =
+                self.damping.force_and_damping(&p.flank, p.s, p.v, p.clearance, p.flank_area());
             response = RingResponse::new(p.v, damping, self.flank.reaction(p.s, p.v, p.clearance));
-            Ok(u - stage.base[1] - per * (external + damping + response.reaction))
+            let falls = falls + self.flank.damping(p.s, p.v, p.clearance);
+            let lacks = u - stage.base[1] - per * (external + damping + response.reaction);
+            Ok((lacks, 1.0 + per * c0 * omega * falls))
         };
         let tol = stage.accuracy[0] / stage.step;
-        let known = Known { from: 0.0, guess: y[1], slope: self.slope, reach: FARTHEST / stage.step, tol };
+        let rest = self.stiffness.map(|s| s * stage.step * stage.step);
+        let known = Known { from: 0.0, guess: y[1], rest, reach: FARTHEST / stage.step, tol };
         let found = first_root(balance, known).map_err(|e| match e {
             RootError::Function(e) => e,
             e => EvalError::recoverable("ring_motion", e.to_string()),
         })?;
         (y[0], y[1]) = (stage.base[0] + stage.step * found.x, found.x);
-        (self.slope, self.v) = (found.slope, response.v);
+        (self.stiffness, self.v) = (found.rest.map(|r| r / (stage.step * stage.step)), response.v);
         self.forces = *forces;
         self.forces.place = last;
         Ok(response)

@@ -104,6 +104,7 @@ fn coefficients_tell_force_slope_and_bend() {
             assert_eq!(r.force(v), force(v), "{fill} {s:e} {v:e}");
             let [value, slope, bend] = r.at(v);
             assert!(value >= 0.0 && slope >= 0.0 && bend <= 0.0, "opposes, grows, bends down");
+            assert_eq!(law.force_and_damping(&oil, s, v, C, A), (force(v), slope));
             let d = 1e-4 * v;
             let [low, high] = [v - d, v + d].map(|v| r.at(v));
             // The third derivative is at most six times the resistance over the cube of the speed: 1e-8 of it; rounding over 1e-4 is less.
