@@ -123,7 +123,7 @@ pub trait RadialLoads {
     fn flux(&mut self) -> &mut [f64; 2];
 }
 
-/// The same for a ring whose film may be tried at other thicknesses, all else as it is.
+/// The same for a ring whose film may be tried at other thicknesses, all else as it is. What contact carries is known from the first trial on.
 pub trait RadialTrials: RadialLoads {
     /// Sets the film thickness \[m\], and the loads of contact and gas that go with it.
     ///

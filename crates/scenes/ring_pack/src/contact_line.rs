@@ -33,6 +33,8 @@ pub struct ContactLine {
     pub range: f64,
     /// Whether the contact takes any load before the film is gone: its mean planes may overlap.
     pub open: bool,
+    /// Film thickness at which the mean planes meet \[m\].
+    meet: f64,
     /// Film thickness that the contact model names as the least one \[m\].
     pub floor: Option<f64>,
     /// Whether on the floor the film contributes no shear.
@@ -105,11 +107,12 @@ impl ContactLine {
     /// Tabulates the contact of `lands` equal faces.
     #[must_use]
     pub fn new(contact: &dyn Contact, planes: &Arc<MeanPlanes>, face: &FaceProfile, lands: usize) -> Self {
-        let touch = planes.range > 0.0;
+        let (touch, meet) = (planes.range > 0.0, contact.mean_gap(0.0));
         let mut line = Self {
             planes: planes.clone(),
             range: planes.range,
-            open: touch && contact.mean_gap(0.0) > 0.0,
+            open: touch && meet > 0.0,
+            meet,
             floor: contact.floor(),
             floor_replaces_film: contact.floor_replaces_film(),
             friction: contact.friction_coefficient(),
@@ -155,10 +158,10 @@ impl ContactLine {
         if h >= self.range { 0.0 } else { fourth(self.area.at(self.planes.place(h)).0) }
     }
 
-    /// Separation of the mean planes at the nearest point \[m\].
+    /// By how much the mean planes overlap at the nearest point \[m\]; 0 where they do not.
     #[must_use]
-    pub fn separation(&self, h: f64) -> f64 {
-        if h >= self.range { h } else { self.planes.separation.at(self.planes.place(h)).0 }
+    pub fn overlap(&self, h: f64) -> f64 {
+        if h >= self.meet { 0.0 } else { (-self.planes.separation.at(self.planes.place(h)).0).max(0.0) }
     }
 
     /// Film thickness that a ring does not go below \[m\], where surfaces that do not take any load stop at `least`: the floor that the contact

@@ -43,8 +43,16 @@ impl Pack {
         self.laws.radial_gas.load(&self.section(i))
     }
 
-    /// What presses ring `i` against the liner and what carries it, and its radial motion, which asks for that.
+    /// What presses ring `i` against the liner and what carries it where it is, and its radial motion, which asks for that.
     pub(super) fn loads(&mut self, i: usize) -> (Loads<'_>, &mut dyn RadialMotion) {
+        let contact = self.rings[i].contact.load(self.at.places[i].h);
+        let (mut loads, radial) = self.trials(i);
+        loads.state.contact = contact;
+        (loads, radial)
+    }
+
+    /// The same for a motion that tries film thicknesses, each of which tells what contact carries.
+    pub(super) fn trials(&mut self, i: usize) -> (Loads<'_>, &mut dyn RadialMotion) {
         let section = self.section(i);
         let (around, rails) = (self.laws.radial_gas.circumference(&section), section.geometry.rails as f64);
         let tension = self.rings[i].pull / around;
@@ -57,7 +65,7 @@ impl Pack {
             thickness: place.h,
             load,
             tension,
-            contact: line.load(place.h),
+            contact: f64::NAN,
             contact_range: line.range,
             dry: at.dry.0,
             lowest: (line.lowest(self.limits.min_film), line.band()),

@@ -109,6 +109,7 @@ type Column = [f64; MAX_NODES];
 /// Samples of one ring over a step.
 #[derive(Debug, Clone, Copy, Default)]
 struct Samples {
+    h: Column,
     ln_h: Column,
     e: Column,
     nearest: Column,
@@ -212,7 +213,7 @@ impl Measures {
         }
         for (i, ring) in self.rings.iter_mut().enumerate() {
             let (place, at, s) = (&pack.at.places[i], &pack.at.rings[i], &mut ring.samples);
-            s.ln_h[k] = elementary::ln(place.h);
+            (s.h[k], s.ln_h[k]) = (place.h, elementary::ln(place.h));
             // A ring that is integrated may stand a little beyond a flank.
             s.e[k] = if pack.rings[i].is_integrated() && place.clearance > 0.0 {
                 place.s / place.clearance
@@ -280,6 +281,7 @@ impl Measures {
         for r in &mut self.rings {
             let s = &mut r.samples;
             for c in [
+                &mut s.h,
                 &mut s.ln_h,
                 &mut s.e,
                 &mut s.nearest,
@@ -319,8 +321,8 @@ impl RingMeasure {
         if let Some((_, high)) = rule.maximum(&s.ratio[..n], self.reverse) {
             self.reverse = high;
         }
-        self.film += over(&|k| elementary::exp(s.ln_h[k]));
-        self.strokes[stroke] += over(&|k| elementary::exp(s.ln_h[k]) * speed[k].abs());
+        self.film += over(&|k| s.h[k]);
+        self.strokes[stroke] += over(&|k| s.h[k] * speed[k].abs());
         self.gap_drive += over(&|k| if s.mu[k] > 0.0 { s.difference[k] / s.mu[k] } else { 0.0 });
         self.groove_drive += over(&|k| s.difference[k] * s.nearest[k].powi(3));
         self.wetted += over(&|k| s.wetted[k]);

@@ -236,13 +236,40 @@ impl Pack {
 
     /// The place of ring `i` for the states `y`.
     pub(super) fn place(&self, i: usize, liner_radius: f64, y: &[f64]) -> RingPlace {
+        let mut place = self.place_in_groove(i, liner_radius, y);
+        place.flank = self.rings[i].flank.oil(&y[self.layout.flank[i].clone()], &place);
+        place
+    }
+
+    /// Places ring `i` for the states `y` after nothing but its film has changed, which leaves it its velocity.
+    pub(super) fn place_on_film(&mut self, i: usize, liner_radius: f64, y: &[f64]) {
+        let before = self.at.places[i];
+        let mut place = self.place_in_groove(i, liner_radius, y);
+        place.v = before.v;
+        place.flank = if (place.s, place.clearance) == (before.s, before.clearance) {
+            before.flank
+        } else {
+            self.rings[i].flank.oil(&y[self.layout.flank[i].clone()], &place)
+        };
+        self.at.places[i] = place;
+    }
+
+    /// The place of ring `i` in a stage that its own steps are to solve: these tell how far the oil on its flanks reaches, which is as it was until then.
+    pub(super) fn place_before_steps(&self, i: usize, liner_radius: f64, y: &[f64]) -> RingPlace {
+        let moves = self.plan.axial && !self.layout.motion[i].is_empty();
+        if !moves && self.layout.flank[i].is_empty() {
+            return self.place(i, liner_radius, y);
+        }
+        RingPlace { flank: self.at.places[i].flank, ..self.place_in_groove(i, liner_radius, y) }
+    }
+
+    /// The place of ring `i` without the oil on its flanks.
+    fn place_in_groove(&self, i: usize, liner_radius: f64, y: &[f64]) -> RingPlace {
         let ring = &self.rings[i];
         let own = self.layout.radial[i].clone();
         let h = if own.is_empty() { ring.nominal_film } else { ring.radial.thickness(&y[own]) };
         let own = &y[self.layout.motion[i].clone()];
-        let mut place = self.place_at(i, liner_radius, h, |clearance| ring.motion.pose(own, clearance));
-        place.flank = ring.flank.oil(&y[self.layout.flank[i].clone()], &place);
-        place
+        self.place_at(i, liner_radius, h, |clearance| ring.motion.pose(own, clearance))
     }
 
     /// Way of the face of ring `i` below the place of ring 1 at top dead centre \[m\], for a pin height \[m\].
@@ -275,10 +302,15 @@ impl Pack {
 
     /// The same without viscosities, which films alone need.
     pub(super) fn locate(&mut self, theta: f64, y: &[f64]) {
+        self.locate_by(theta, |pack, i, radius| pack.place(i, radius, y));
+    }
+
+    /// The same with places that `place` tells for a ring and the radius of the liner there \[m\].
+    pub(super) fn locate_by(&mut self, theta: f64, place: impl Fn(&Self, usize, f64) -> RingPlace) {
         self.at.theta = theta;
         self.at.piston = self.kinematics.motion(theta);
         let pin = self.at.piston.y;
-        (0..self.n_rings()).for_each(|i| self.at.places[i] = self.place(i, self.liner_radius(i, pin), y));
+        (0..self.n_rings()).for_each(|i| self.at.places[i] = place(self, i, self.liner_radius(i, pin)));
     }
 
     /// Runs the gas model on `self.gas_state` and copies the pressures to the rings. `p_cylinder` overrides the model.

@@ -212,7 +212,7 @@ impl Pack {
     ) -> Result<(), EvalError> {
         match side {
             Side::Grooves => {
-                self.locate(theta, y);
+                self.locate_by(theta, |pack, i, radius| pack.place_before_steps(i, radius, y));
                 self.begin_stage(y, w)?;
                 self.set_film_forces(axial);
                 self.grooves_by_steps(stage, y, p, w)?;
@@ -329,9 +329,7 @@ impl Pack {
                 oil.solve(stage, y, &mut |y, states, r| self.oil_under((i, states), stage, y, r))?;
             }
             change = change.max((y[film] - before).abs() / stage.accuracy[film]);
-            let v = self.at.places[i].v;
-            self.at.places[i] = self.place(i, w.radii[i], y);
-            self.at.places[i].v = v;
+            self.place_on_film(i, w.radii[i], y);
             self.friction(i)?;
         }
         Ok(change)
@@ -377,7 +375,7 @@ impl Pack {
             oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
         }
         let own = self.layout.radial[i].clone();
-        let (mut loads, radial) = self.loads(i);
+        let (mut loads, radial) = self.trials(i);
         let found = radial.try_stage(&part(stage, own.clone()), &y[own.clone()], &mut loads, r)?;
         let found = found.map(|(response, film)| loads.found(&response, film));
         self.at.rings[i] =
@@ -414,7 +412,7 @@ impl Pack {
     fn film_of_stage(&mut self, i: usize, stage: &Stage<'_>, y: &mut [f64]) -> Result<(), EvalError> {
         let own = self.layout.radial[i].clone();
         let part = part(stage, own.clone());
-        let (mut loads, radial) = self.loads(i);
+        let (mut loads, radial) = self.trials(i);
         let (response, film) = radial.stage(&part, &mut y[own], &mut loads)?;
         self.at.rings[i] = loads.found(&response, film);
         Ok(())

@@ -71,7 +71,7 @@ impl Watch {
             }
             let line = &pack.rings[i].contact;
             if line.open {
-                w.overlap.see(-line.separation(place.h), theta, weight);
+                w.overlap.see(line.overlap(place.h), theta, weight);
             }
             if let Some(end) = pack.rings[i].factors_end {
                 w.factors.see(end - place.h, theta, weight);

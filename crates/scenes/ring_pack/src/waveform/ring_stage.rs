@@ -145,7 +145,10 @@ impl<'a> RingStage<'a> {
         let mut inp = FlankIn::new(self.place, above, behind, below);
         let (mut lacks, mut steps, mut dy) = ([0.0; MOST_STATES], [0.0; MOST_STATES], [0.0; MOST_STATES]);
         for look in 0..LOOKS {
-            inp.place.flank = self.ring.flank.oil(&y[m..n], &inp.place);
+            // The last look at the motion was at this oil.
+            if look > 0 || m == 0 {
+                inp.place.flank = self.ring.flank.oil(&y[m..n], &inp.place);
+            }
             let lost = self.ring.flank.rates(&y[m..n], &inp, &mut dy[m..n])?.lost;
             let mut farthest = 0.0_f64;
             for j in m..n {
