@@ -33,7 +33,8 @@ pub fn turbulent_share(reynolds: f64) -> (f64, f64) {
     // The bound keeps the cube a number.
     let x = (reynolds / TRANSITION).min(1e100);
     let cube = x * x * x;
-    let share = if cube < SLOW { slow_share(cube) } else { elementary::powf(1.0 + cube, -1.0 / 7.0) };
+    let share =
+        if cube < SLOW { slow_share(cube) } else { elementary::exp(elementary::ln(1.0 + cube) / -7.0) };
     (share, share * (1.0 - 3.0 / 7.0 * cube / (1.0 + cube)))
 }
 

@@ -1,5 +1,5 @@
 use gudgeon_core::elementary;
-use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
+use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec, highest_on_grid};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
@@ -149,8 +149,9 @@ impl CylinderPressureSpec for PolytropicBurn {
             ("burn_start", start),
             ("exhaust_open", open),
         ])?;
+        let ratio = chamber.volume(close) / chamber.clearance;
         let mut burn = Burn {
-            volume_at_close: chamber.volume(close),
+            compressed: self.intake_pressure.si() * elementary::powf(ratio, self.compression_exponent.si()),
             chamber,
             spec: self.clone(),
             reached,
@@ -199,7 +200,8 @@ struct Burn {
     close: f64,
     start: f64,
     open: f64,
-    volume_at_close: f64,
+    /// Pressure of the charge in the clearance volume without a burn.
+    compressed: f64,
     pressure_at_open: f64,
     kinks: [f64; 5],
 }
@@ -208,19 +210,16 @@ impl Burn {
     /// The branch with closed valves.
     fn closed(&self, theta: f64) -> f64 {
         let s = &self.spec;
-        let v = self.chamber.volume(theta);
-        let compressed =
-            s.intake_pressure.si() * elementary::powf(self.volume_at_close / v, s.compression_exponent.si());
+        // Powers of one ratio.
+        let expanded = elementary::ln(self.chamber.volume(theta) / self.chamber.clearance);
+        let compressed = self.compressed * elementary::exp(-s.compression_exponent.si() * expanded);
         if theta <= self.start {
             return compressed;
         }
         let u = (theta - self.start) / s.burn_duration.si();
         let burnt =
             -elementary::exp_m1(-s.burn_completeness.si() * elementary::powf(u, s.burn_exponent.si()));
-        compressed
-            + s.burn_pressure.si()
-                * burnt
-                * elementary::powf(self.chamber.clearance / v, s.expansion_exponent.si())
+        compressed + s.burn_pressure.si() * burnt * elementary::exp(-s.expansion_exponent.si() * expanded)
     }
 }
 
@@ -245,5 +244,9 @@ impl CylinderPressure for Burn {
     }
     fn period(&self) -> f64 {
         FOUR_STROKE
+    }
+    fn highest(&self) -> (f64, f64) {
+        // However short the burn, the volume grows slowly behind it.
+        highest_on_grid(self, 1.0_f64.to_radians())
     }
 }

@@ -211,7 +211,8 @@ impl Scheme for Sdirk {
 
     fn accept(&mut self, _h: f64, error: f64) -> f64 {
         self.judged = false;
-        SAFETY / elementary::powf(error.max(1e-10), self.exponent())
+        // The power of the exponent.
+        SAFETY / elementary::cbrt(error.max(1e-10))
     }
 
     fn attempt<S: OdeSystem + ?Sized>(

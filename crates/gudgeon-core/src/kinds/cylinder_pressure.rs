@@ -51,7 +51,7 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
     /// Crank angle \[rad\] in `[0, period]` of the highest pressure, and that pressure \[Pa\]. A model that knows it says so; this looks every
     /// quarter of a degree and on both sides of every kink, then between the neighbours of the highest value.
     fn highest(&self) -> (f64, f64) {
-        search_highest(self)
+        highest_on_grid(self, 0.25_f64.to_radians())
     }
     /// Whether it is another one at another speed of the crank.
     fn depends_on_speed(&self) -> bool {
@@ -64,12 +64,13 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
 }
 dyn_clone::clone_trait_object!(CylinderPressure);
 
-/// [`CylinderPressure::highest`] of a model that knows nothing but its values.
-fn search_highest<P: CylinderPressure + ?Sized>(model: &P) -> (f64, f64) {
-    /// Steps of golden section: from half a degree to the rounding of the angle of a smooth top, some 1e-8.
+/// [`CylinderPressure::highest`] of a model that knows of its highest pressure no more than that it is alone between two points `spacing` \[rad\] beside it: looks at points that far apart
+/// and on both sides of every kink, then between the neighbours of the highest value.
+pub fn highest_on_grid<P: CylinderPressure + ?Sized>(model: &P, spacing: f64) -> (f64, f64) {
+    /// Steps of golden section: from two degrees to the rounding of the angle of a smooth top, some 1e-8.
     const STEPS: u32 = 40;
     const RATIO: f64 = 0.618_033_988_749_894_8;
-    let parts = (model.period().to_degrees() * 4.0).ceil().max(1.0);
+    let parts = (model.period() / spacing).round().max(1.0);
     let width = model.period() / parts;
     let at = |theta: f64| (theta, model.pressure(theta));
     let greater = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };

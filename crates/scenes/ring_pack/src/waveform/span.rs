@@ -159,7 +159,7 @@ impl Steps {
             if too_far {
                 // What the first stage saw is the stage of a step that was too long.
                 self.is_whole = false;
-                self.start.h = (t - self.start.acting.t) * shortened(self.spans[1].error);
+                self.start.h = (t - self.start.acting.t) * change(self.spans[1].error, 0.1, 0.9);
                 let place = self.spans[0].place;
                 self.take_steps(
                     ring,
@@ -211,7 +211,7 @@ impl Steps {
         second.lost = early * (1.0 - GAMMA) + GAMMA * whole.h * lost - first.lost;
         second.error = error(whole, (&start.y, &start.rates), &self.relative);
         if to.chooses {
-            let next = whole.h * (SAFETY / elementary::cbrt(second.error.max(1e-10))).clamp(0.2, GROWTH);
+            let next = whole.h * change(second.error, 0.2, GROWTH);
             second.end.h = next.max(start.h);
             second.end.atol = self.atol;
             stage.ease(&mut second.end.atol);
@@ -274,9 +274,17 @@ fn error(step: &Step, (y0, k0): (&States, &States), relative: &States) -> f64 {
     each.iter().fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { b.max(a) })
 }
 
-/// Part of a step with an error above the tolerance that is tried next.
-fn shortened(error: f64) -> f64 {
-    (SAFETY / elementary::cbrt(error)).clamp(0.1, 0.9)
+/// The next step over one with an error over the tolerance, within limits.
+fn change(error: f64, least: f64, most: f64) -> f64 {
+    // Resting rings are at a limit most of the time, for which no root is needed.
+    let at = |limit: f64| (SAFETY / limit) * (SAFETY / limit) * (SAFETY / limit);
+    if error <= at(most) {
+        most
+    } else if error >= at(least) {
+        least
+    } else {
+        SAFETY / elementary::cbrt(error)
+    }
 }
 
 /// The integration of a span by steps of the ring.
@@ -313,10 +321,10 @@ impl Integration<'_> {
             if error > 1.0 {
                 self.span.steps.pop();
                 self.span.lost = lost;
-                (h, most) = (tried * shortened(error), 1.0);
+                (h, most) = (tried * change(error, 0.1, 0.9), 1.0);
                 continue;
             }
-            let next = tried * (SAFETY / elementary::cbrt(error.max(1e-10))).clamp(0.2, most);
+            let next = tried * change(error, 0.2, most);
             (h, most) = (if tried < h { h.max(next) } else { next }, GROWTH_WITHIN);
             self.span.error = self.span.error.max(error);
             self.span.end.atol = *self.accuracy.0;
