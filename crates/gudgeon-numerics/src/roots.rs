@@ -278,20 +278,23 @@ fn secants<E>(
     known: Known,
 ) -> Result<Option<Found>, RootError<E>> {
     let Some(mut rest) = known.rest else { return Ok(None) };
-    let mut at = look(known.guess)?;
-    for _ in 0..SECANTS {
+    let (mut x, mut before) = (known.guess, None::<Look>);
+    for _ in 0..=SECANTS {
+        let at = look(x)?;
+        if let Some(before) = before {
+            let Some(seen) = before.rest(&at) else { return Ok(None) };
+            rest = seen;
+        }
         let slope = at.told + rest;
         let step = -at.f / slope;
         if slope <= 0.0 || step.is_nan() || step.abs() > known.reach {
             return Ok(None);
         }
-        let x = at.x + step;
+        x = at.x + step;
         if step.abs() <= known.tol {
             return Ok(Some(Found { x, rest: Some(rest) }));
         }
-        let next = look(x)?;
-        let Some(seen) = at.rest(&next) else { return Ok(None) };
-        (rest, at) = (seen, next);
+        before = Some(at);
     }
     Ok(None)
 }

@@ -58,19 +58,19 @@ impl FlankCtx {
 }
 
 /// What acts on the oil of the flanks at an instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct FlankIn {
+pub struct FlankIn<'a> {
     /// Where the ring is, with its velocity.
-    pub place: RingPlace,
+    pub place: &'a RingPlace,
     /// Absolute pressures above, behind and below the ring \[Pa\].
     pub pressure: [f64; 3],
 }
 
-impl FlankIn {
+impl<'a> FlankIn<'a> {
     /// A ring at a place between the pressures above, behind and below it \[Pa\].
     #[must_use]
-    pub const fn new(place: RingPlace, above: f64, behind: f64, below: f64) -> Self {
+    pub const fn new(place: &'a RingPlace, above: f64, behind: f64, below: f64) -> Self {
         Self { place, pressure: [above, behind, below] }
     }
 }
@@ -102,7 +102,7 @@ pub trait Flank: Stateful + Send {
     ///
     /// # Errors
     /// States for which the model has no answer.
-    fn rates(&mut self, _y: &[f64], _at: &FlankIn, _dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
+    fn rates(&mut self, _y: &[f64], _at: &FlankIn<'_>, _dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
         Ok(FlankFlow::default())
     }
 

@@ -92,6 +92,13 @@ pub struct RingPose {
 }
 
 impl RingPose {
+    /// Puts a ring into the pose.
+    #[inline]
+    pub fn put(self, place: &mut RingPlace) {
+        (place.s, place.v, place.lift_fraction) = (self.s, self.v, self.lift_fraction);
+        (place.twist, place.twist_rate) = (self.twist, self.twist_rate);
+    }
+
     /// A ring at height `s` \[m\] with velocity `v` \[m/s\] in a groove that leaves it a `clearance` \[m\].
     #[inline]
     #[must_use]
@@ -187,6 +194,14 @@ impl RingForces {
     }
 }
 
+/// What a stage of an implicit step is solved under, by trials of where the ring is.
+pub struct RingTrials<'a> {
+    /// What acts on the ring; its place is that of the last trial.
+    pub forces: &'a mut RingForces,
+    /// The oil on the flanks of the ring at a place.
+    pub oil: &'a mut dyn FnMut(&RingPlace) -> FlankOil,
+}
+
 /// What the motion adds to the forces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -250,8 +265,7 @@ pub trait RingMotion: Stateful + Send {
         self.states().is_empty()
     }
 
-    /// Solves a stage of an implicit step for the states `y`, which come as a guess, under `forces` that stay as they are; `place` tells where the ring is in
-    /// a pose. The forces of the groove at the answer.
+    /// Solves a stage of an implicit step for the states `y`, which come as a guess. The forces of the groove at the answer, where `trials` leaves the ring.
     ///
     /// # Errors
     /// No states at which the stage closes; a model with states that does not solve stages.
@@ -259,13 +273,12 @@ pub trait RingMotion: Stateful + Send {
         &mut self,
         _stage: &Stage<'_>,
         y: &mut [f64],
-        forces: &RingForces,
-        _place: &mut dyn FnMut(RingPose) -> RingPlace,
+        trials: &mut RingTrials<'_>,
     ) -> Result<RingResponse, EvalError> {
         if !y.is_empty() {
             return Err(EvalError::fatal("ring_motion", "the model does not solve stages of implicit steps"));
         }
-        self.rates(y, forces, &mut [])
+        self.rates(y, trials.forces, &mut [])
     }
 
     /// The same law as one of second order in the height, `m s'' = F + F_damping(s, v)` between rigid flanks, for schemes that step it

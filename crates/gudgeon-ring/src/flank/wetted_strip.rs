@@ -263,8 +263,8 @@ impl Flank for Runtime {
         FlankOil { wetted: [lower.0, upper.0], open: [lower.1, upper.1] }
     }
 
-    fn rates(&mut self, y: &[f64], at: &FlankIn, dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
-        let (place, [above, behind, below]) = (&at.place, at.pressure);
+    fn rates(&mut self, y: &[f64], at: &FlankIn<'_>, dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
+        let (place, [above, behind, below]) = (at.place, at.pressure);
         let (oil, h) = (self.volumes(y), distances(place));
         let (rate, dp) = ([-place.v, place.v], [behind - below, above - behind]);
         let mut sum = FlankFlow::default();

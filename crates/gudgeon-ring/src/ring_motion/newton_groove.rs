@@ -1,8 +1,9 @@
 //! The ring as a mass that moves between the groove flanks.
 
-use gudgeon_core::geometry::{FlankOil, RingPlace};
+use gudgeon_core::geometry::FlankOil;
 use gudgeon_core::kinds::{
-    FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, SecondOrder,
+    FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, RingTrials,
+    SecondOrder,
 };
 use gudgeon_core::quantity::{PosStiffness, PosVelocity, quantity};
 use gudgeon_core::states::{Signals, Stage, StateInfo, Stateful};
@@ -221,22 +222,23 @@ impl RingMotion for Runtime {
         &mut self,
         stage: &Stage<'_>,
         y: &mut [f64],
-        forces: &RingForces,
-        place: &mut dyn FnMut(RingPose) -> RingPlace,
+        trials: &mut RingTrials<'_>,
     ) -> Result<RingResponse, EvalError> {
+        let RingTrials { forces, oil } = trials;
         let (c0, omega, a) = (self.clearance, self.omega, &forces.axial);
         let external = a.gas + a.inertia + a.gravity + a.film + a.expander;
         let per = stage.step / (self.mass * c0 * omega * omega);
         let mut response = RingResponse::default();
-        let mut last = forces.place;
+        let place = &mut forces.place;
+        let (clearance, area) = (place.clearance, place.flank_area());
         let balance = |u: f64| -> Result<(f64, f64), EvalError> {
             let height = stage.base[0] + stage.step * u;
-            last = place(RingPose::at_height(height * c0, u * c0 * omega, forces.place.clearance));
-            let p = &last;
-            let (damping, falls) =
-                self.damping.force_and_damping(&p.flank, p.s, p.v, p.clearance, p.flank_area());
-            response = RingResponse::new(p.v, damping, self.flank.reaction(p.s, p.v, p.clearance));
-            let falls = falls + self.flank.damping(p.s, p.v, p.clearance);
+            let (s, v) = (height * c0, u * c0 * omega);
+            RingPose::at_height(s, v, clearance).put(place);
+            place.flank = oil(place);
+            let (damping, falls) = self.damping.force_and_damping(&place.flank, s, v, clearance, area);
+            response = RingResponse::new(v, damping, self.flank.reaction(s, v, clearance));
+            let falls = falls + self.flank.damping(s, v, clearance);
             let lacks = u - stage.base[1] - per * (external + damping + response.reaction);
             Ok((lacks, 1.0 + per * c0 * omega * falls))
         };
@@ -249,8 +251,7 @@ impl RingMotion for Runtime {
         })?;
         (y[0], y[1]) = (stage.base[0] + stage.step * found.x, found.x);
         (self.stiffness, self.v) = (found.rest.map(|r| r / (stage.step * stage.step)), response.v);
-        self.forces = *forces;
-        self.forces.place = last;
+        self.forces = **forces;
         Ok(response)
     }
 

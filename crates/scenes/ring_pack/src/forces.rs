@@ -259,7 +259,7 @@ impl Pack {
             return Ok(());
         }
         let r = &self.at.rings[i];
-        let at = FlankIn::new(self.at.places[i], r.p_above, r.p_back, r.p_below);
+        let at = FlankIn::new(&self.at.places[i], r.p_above, r.p_back, r.p_below);
         self.at.rings[i].flank = self.rings[i].flank.rates(&y[own.clone()], &at, &mut self.dy[own])?;
         Ok(())
     }

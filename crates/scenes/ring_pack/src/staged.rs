@@ -12,8 +12,7 @@
 use std::ops::Range;
 
 use gudgeon_core::EvalError;
-use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{RingForces, RingPose};
+use gudgeon_core::kinds::{RingForces, RingTrials};
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::stages::StageNewton;
 
@@ -452,24 +451,20 @@ impl Pack {
         radius: f64,
     ) -> Result<(), EvalError> {
         let (own, oil) = (self.layout.motion[i].clone(), self.layout.flank[i].clone());
-        let mut at = self.place(i, radius, y);
+        let at = self.place(i, radius, y);
         self.at.places[i] = at;
         if !self.plan.axial || own.is_empty() {
             return Ok(());
         }
         self.external_forces(i);
-        let forces = RingForces::new(at, self.at.rings[i].axial);
+        let mut forces = RingForces::new(at, self.at.rings[i].axial);
         let (before, after) = y.split_at_mut(own.end);
         let ring = &mut self.rings[i];
         let (flank, oil) = (&ring.flank, &after[oil.start - own.end..oil.end - own.end]);
-        let mut place = |pose: RingPose| -> RingPlace {
-            (at.s, at.v, at.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
-            at.flank = flank.oil(oil, &at);
-            at
-        };
         let part = part(stage, own.clone());
-        let response = ring.motion.stage(&part, &mut before[own], &forces, &mut place)?;
-        self.at.places[i] = at;
+        let mut trials = RingTrials { forces: &mut forces, oil: &mut |place| flank.oil(oil, place) };
+        let response = ring.motion.stage(&part, &mut before[own], &mut trials)?;
+        self.at.places[i] = forces.place;
         let r = &mut self.at.rings[i];
         (r.axial.damping, r.reaction) = (response.damping, response.reaction);
         Ok(())

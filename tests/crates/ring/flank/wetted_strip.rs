@@ -80,7 +80,7 @@ fn gas_drives_a_seated_strip_out_as_between_parallel_walls() {
         let mut dy = [0.0; 2];
         // The lower flank seats under a pressure behind the ring; above the ring nothing drives.
         let place = at(film, y, 0.0, 0.0);
-        film.rates(y, &FlankIn::new(place, 1e5 + dp, 1e5 + dp, 1e5), &mut dy).expect("rates");
+        film.rates(y, &FlankIn::new(&place, 1e5 + dp, 1e5 + dp, 1e5), &mut dy).expect("rates");
         dy.map(|d| d * OMEGA)
     };
     for _ in 0..steps {
@@ -104,7 +104,7 @@ fn a_ring_that_comes_down_gathers_what_the_walls_hold() {
         let mut dy = [0.0; 2];
         let s = from - (f64::from(k) + 0.5) * dt * v;
         let place = at(&*film, &y, s, -v);
-        film.rates(&y, &FlankIn::new(place, 1e5, 1e5, 1e5), &mut dy).expect("rates");
+        film.rates(&y, &FlankIn::new(&place, 1e5, 1e5, 1e5), &mut dy).expect("rates");
         y[0] += dt * OMEGA * dy[0];
     }
     let missing = (-2.0 * (1.0 - (SIGMA / (from + SIGMA)).powi(2))).exp();
@@ -121,7 +121,7 @@ fn rates_are_what_comes_less_what_goes() {
     for (s, v) in [(0.0, -1e-4), (2e-6, 1e-2), (3e-5, -0.3), (C, 1e-3)] {
         let (y, mut dy) = ([0.7, 0.4], [0.0; 2]);
         let place = at(&*film, &y, s, v);
-        let flow = film.rates(&y, &FlankIn::new(place, 30e5, 20e5, 2e5), &mut dy).expect("rates");
+        let flow = film.rates(&y, &FlankIn::new(&place, 30e5, 20e5, 2e5), &mut dy).expect("rates");
         let change = (dy[0] + dy[1]) * OMEGA * supply;
         // Rounding of sums of the flows.
         assert!((change - (flow.fed - flow.lost)).abs() <= 1e-14 * (flow.fed + flow.lost));
@@ -166,7 +166,7 @@ fn gas_does_not_drive_out_what_hangs_on_the_walls_beside_it() {
     let (s, dp, edge) = (0.5 * C, 1e5, 1e-4);
     let mut lost = |y: f64| {
         let place = at(&*film, &[y, 0.0], s, 0.0);
-        let at = FlankIn::new(place, 1e5, 1e5 + dp, 1e5);
+        let at = FlankIn::new(&place, 1e5, 1e5 + dp, 1e5);
         film.rates(&[y, 0.0], &at, &mut [0.0; 2]).expect("rates").lost
     };
     let gap = s + SIGMA;
@@ -191,6 +191,6 @@ fn less_than_no_oil_does_not_push() {
     // And fills again.
     let (mut film, mut dy) = (built(&forgotten(), 0.3), [0.0; 2]);
     let place = at(&*film, &[-0.3, 1.0], 0.0, 0.0);
-    film.rates(&[-0.3, 1.0], &FlankIn::new(place, 1e5, 20e5, 1e5), &mut dy).expect("rates");
+    film.rates(&[-0.3, 1.0], &FlankIn::new(&place, 1e5, 20e5, 1e5), &mut dy).expect("rates");
     assert!(dy[0] > 0.0, "{dy:?}");
 }

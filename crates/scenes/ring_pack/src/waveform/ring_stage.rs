@@ -2,7 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{FlankIn, RingForces, RingPose, RingResponse};
+use gudgeon_core::kinds::{AxialForces, FlankIn, RingForces, RingResponse, RingTrials};
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::sdirk::{GAMMA, PLACES};
 
@@ -69,15 +69,21 @@ pub struct RingStage<'a> {
     sizes: (usize, usize),
     /// How what the oil lacks grows with it.
     slope: &'a mut States,
-    /// Where the ring stands after a stage, and what the motion answered.
-    pub place: RingPlace,
+    /// What acts on the ring, with the place where it stands after a stage, and what the motion answered.
+    forces: RingForces,
     pub response: RingResponse,
 }
 
 impl<'a> RingStage<'a> {
     /// For a ring at a place of which its stages change pose and clearance.
     pub fn new(ring: &'a mut Ring, sizes: (usize, usize), slope: &'a mut States, place: &RingPlace) -> Self {
-        Self { ring, sizes, slope, place: *place, response: RingResponse::default() }
+        let forces = RingForces::new(*place, AxialForces::default());
+        Self { ring, sizes, slope, forces, response: RingResponse::default() }
+    }
+
+    /// Where the ring stands after a stage.
+    pub const fn place(&self) -> &RingPlace {
+        &self.forces.place
     }
 
     /// Eases the errors admitted of a ring where it stands.
@@ -105,7 +111,7 @@ impl<'a> RingStage<'a> {
     /// Motion and oil in turns.
     fn both(&mut self, stage: &Stage<'_>, y: &mut States, at: &Acting) -> Result<f64, EvalError> {
         let (m, n) = self.sizes;
-        self.place.clearance = at.clearance();
+        self.forces.place.clearance = at.clearance();
         for _ in 0..=PASSES {
             if m > 0 {
                 self.motion(stage, &mut y[..n], at)?;
@@ -127,29 +133,26 @@ impl<'a> RingStage<'a> {
     fn motion(&mut self, stage: &Stage<'_>, y: &mut [f64], at: &Acting) -> Result<(), EvalError> {
         let m = self.sizes.0;
         let part = Stage { base: &stage.base[..m], accuracy: &stage.accuracy[..m], ..*stage };
-        let forces = RingForces::new(self.place, at.axial());
+        self.forces.axial = at.axial();
         let (motion, oil) = y.split_at_mut(m);
-        let (flank, stands) = (&self.ring.flank, &mut self.place);
-        let mut place = |pose: RingPose| {
-            (stands.s, stands.v, stands.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
-            stands.flank = flank.oil(oil, stands);
-            *stands
-        };
-        self.response = self.ring.motion.stage(&part, motion, &forces, &mut place)?;
+        let flank = &self.ring.flank;
+        let mut trials = RingTrials { forces: &mut self.forces, oil: &mut |place| flank.oil(oil, place) };
+        self.response = self.ring.motion.stage(&part, motion, &mut trials)?;
         Ok(())
     }
 
     /// Finds the oil on the flanks where the ring stands; what leaves the flanks \[m²/s\]. Each flank has its own: secants on both at once.
     fn oil(&mut self, stage: &Stage<'_>, y: &mut States, at: &Acting) -> Result<f64, EvalError> {
         let ([above, behind, below], (m, n)) = (at.pressures(), self.sizes);
-        let mut inp = FlankIn::new(self.place, above, behind, below);
+        let place = &mut self.forces.place;
         let (mut lacks, mut steps, mut dy) = ([0.0; MOST_STATES], [0.0; MOST_STATES], [0.0; MOST_STATES]);
         for look in 0..LOOKS {
             // The last look at the motion was at this oil.
             if look > 0 || m == 0 {
-                inp.place.flank = self.ring.flank.oil(&y[m..n], &inp.place);
+                place.flank = self.ring.flank.oil(&y[m..n], place);
             }
-            let lost = self.ring.flank.rates(&y[m..n], &inp, &mut dy[m..n])?.lost;
+            let at = FlankIn::new(place, above, behind, below);
+            let lost = self.ring.flank.rates(&y[m..n], &at, &mut dy[m..n])?.lost;
             let mut farthest = 0.0_f64;
             for j in m..n {
                 let now = y[j] - stage.base[j] - stage.step * dy[j];
@@ -164,7 +167,6 @@ impl<'a> RingStage<'a> {
                 farthest = farthest.max((far / stage.accuracy[j]).abs());
             }
             if farthest <= 1.0 {
-                self.place.flank = inp.place.flank;
                 return Ok(lost);
             }
         }

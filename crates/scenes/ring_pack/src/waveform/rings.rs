@@ -400,8 +400,8 @@ impl Pack {
         if steps.n == 0 {
             return Ok(0.0);
         }
-        let (acting, place) = (Acting::of(self, i), self.at.places[i]);
-        let to = Target { number: stage.number, acting, place: &place, chooses };
+        let acting = Acting::of(self, i);
+        let to = Target { number: stage.number, acting, place: &self.at.places[i], chooses };
         steps.integrate(&mut self.rings[i], &to)?;
         steps.tell_lost(stage);
         let span = &steps.spans[stage.number - 1];

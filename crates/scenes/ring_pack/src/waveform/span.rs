@@ -200,7 +200,7 @@ impl Steps {
         let lost = stage.solve(whole, (to.number, &start.y), &accuracy, &to.acting)?;
         let span = if to.number == 1 { &mut *first } else { &mut *second };
         (span.end.y, span.end.rates) = (whole.y[to.number - 1], whole.rates[to.number - 1]);
-        (span.place, span.response) = (stage.place, stage.response);
+        (span.place, span.response) = (*stage.place(), stage.response);
         span.steps.clear();
         if to.number == 1 {
             (first.error, first.lost) = (0.0, GAMMA * whole.h * lost);
@@ -238,8 +238,7 @@ impl Steps {
                 run.span.error = run.span.error.max(error);
             }
         }
-        let RingStage { place, response, .. } = run.stage;
-        (span.place, span.response) = (place, response);
+        (run.span.place, run.span.response) = (*run.stage.place(), run.stage.response);
         if let Some(last) = span.steps.last() {
             (span.end.y, span.end.rates) = (last.y[1], last.rates[1]);
         }
