@@ -161,7 +161,13 @@ impl ContactLine {
     /// By how much the mean planes overlap at the nearest point \[m\]; 0 where they do not.
     #[must_use]
     pub fn overlap(&self, h: f64) -> f64 {
-        if h >= self.meet { 0.0 } else { (-self.planes.separation.at(self.planes.place(h)).0).max(0.0) }
+        if h >= self.meet { 0.0 } else { (-self.separation(h)).max(0.0) }
+    }
+
+    /// Separation of the mean planes at the nearest point \[m\].
+    #[must_use]
+    pub fn separation(&self, h: f64) -> f64 {
+        if h >= self.range { h } else { self.planes.separation.at(self.planes.place(h)).0 }
     }
 
     /// Film thickness that a ring does not go below \[m\], where surfaces that do not take any load stop at `least`: the floor that the contact
