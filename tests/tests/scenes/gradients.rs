@@ -70,10 +70,10 @@ fn blow_by_and_friction_by_inputs_are_those_of_differences() {
     }
 }
 
-/// Derivatives followed at the tolerance of the case, in steps of which many have a corner of the rates in them, are those of a cycle that is followed in twice as
-/// many steps, to two thousandths; elasticities below a hundredth to two thousandths of that. At tolerances from 1e-7 to 4e-7 the largest deviation from a cycle at
-/// 1e-9 was between 5e-4 and 1e-3, and with contact tables of 6, 10, 12, 14 and 20 panels, which agree to 1e-8 of the load, 3.3e-4, 6.4e-4, 4.6e-4, 8.0e-4 and
-/// 1.1e-3: the last digits move corners from step to step. The tight ones were compared with differences of runs at 1e-9.
+/// Derivatives followed at about the tolerance of the case, in steps of which many have a corner of the rates in them, are those of a cycle that is followed in twice as
+/// many steps: two of three to two thousandths, all to four; elasticities below a hundredth to as much of that. The last digits move corners from step to step: of 24
+/// tolerances from 7e-5 to 1.5e-4 the derivative of the blow-by by the speed was off a cycle at 1e-9 by 7e-4 in the median and 2.3e-3 at most, and by 8e-4 and 2.6e-3 after another
+/// order of the same sums in the pressure of the cylinder; at tolerances from 1e-7 to 4e-7 by up to 1.1e-3. The tight ones were compared with differences of runs at 1e-9.
 #[test]
 fn derivatives_depend_little_on_the_tolerance() {
     let inputs = by(&[
@@ -90,11 +90,15 @@ fn derivatives_depend_little_on_the_tolerance() {
     ]);
     let followed =
         |set: &[&str]| gradients(&checked(CASE, &on_the_deck(set)), &inputs, &[], &mut unwatched).unwrap();
-    let (own, tight) = (followed(&[]), followed(&["solver.tolerance=3e-8", "solver.periodicity=3e-8"]));
+    let tight = followed(&["solver.tolerance=3e-8", "solver.periodicity=3e-8"]);
+    let own = [&[][..], &["solver.tolerance=7e-5"], &["solver.tolerance=1.5e-4"]].map(followed);
     for result in ["blow_by", "fmep"] {
         for (k, input) in inputs.iter().enumerate() {
-            let [a, b] = [&own, &tight].map(|g| g.elasticity(result, k).unwrap());
-            assert!((a - b).abs() <= 2e-3 * b.abs().max(1e-2), "{result} by {input}: {a} {b}");
+            let exact = tight.elasticity(result, k).unwrap();
+            let off = |g: &gudgeon_core::result::Gradients| (g.elasticity(result, k).unwrap() - exact).abs() / exact.abs().max(1e-2);
+            let mut off = own.each_ref().map(off);
+            off.sort_by(f64::total_cmp);
+            assert!(off[1] <= 2e-3 && off[2] <= 4e-3, "{result} by {input}: {exact}, off by {off:?}");
         }
     }
 }
