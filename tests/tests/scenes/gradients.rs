@@ -95,7 +95,9 @@ fn derivatives_depend_little_on_the_tolerance() {
     for result in ["blow_by", "fmep"] {
         for (k, input) in inputs.iter().enumerate() {
             let exact = tight.elasticity(result, k).unwrap();
-            let off = |g: &gudgeon_core::result::Gradients| (g.elasticity(result, k).unwrap() - exact).abs() / exact.abs().max(1e-2);
+            let off = |g: &gudgeon_core::result::Gradients| {
+                (g.elasticity(result, k).unwrap() - exact).abs() / exact.abs().max(1e-2)
+            };
             let mut off = own.each_ref().map(off);
             off.sort_by(f64::total_cmp);
             assert!(off[1] <= 2e-3 && off[2] <= 4e-3, "{result} by {input}: {exact}, off by {off:?}");
