@@ -268,7 +268,7 @@ impl Look {
     /// What the function does not tell of its derivative between here and another point, the secant of which is that of the middle; none where it does not rise.
     fn rest(&self, to: &Self) -> Option<f64> {
         let slope = self.secant(to);
-        (slope > 0.0).then(|| slope - 0.5 * (self.told + to.told))
+        (slope > 0.0).then_some(slope - 0.5 * (self.told + to.told))
     }
 }
 
