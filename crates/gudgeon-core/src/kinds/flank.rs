@@ -93,7 +93,7 @@ pub trait Flank: Stateful + Send {
     /// The force of the oil, for the motion of the ring.
     fn law(&self) -> Box<dyn FlankLaw>;
 
-    /// Where the oil stands for the states `y` and a ring at `place`.
+    /// Where the oil stands for the states `y` and a ring at `place`. Of that the pose and the clearance count: nobody asks again where only the film under the face has changed.
     fn oil(&self, _y: &[f64], _place: &RingPlace) -> FlankOil {
         FlankOil::default()
     }

@@ -195,11 +195,20 @@ impl RingForces {
 }
 
 /// What a stage of an implicit step is solved under, by trials of where the ring is.
+#[non_exhaustive]
 pub struct RingTrials<'a> {
     /// What acts on the ring; its place is that of the last trial.
     pub forces: &'a mut RingForces,
     /// The oil on the flanks of the ring at a place.
     pub oil: &'a mut dyn FnMut(&RingPlace) -> FlankOil,
+}
+
+impl<'a> RingTrials<'a> {
+    /// Trials under forces, beginning at their place, with what is on the flanks at a place.
+    #[inline]
+    pub fn new(forces: &'a mut RingForces, oil: &'a mut dyn FnMut(&RingPlace) -> FlankOil) -> Self {
+        Self { forces, oil }
+    }
 }
 
 /// What the motion adds to the forces.

@@ -224,7 +224,7 @@ impl RingMotion for Runtime {
         y: &mut [f64],
         trials: &mut RingTrials<'_>,
     ) -> Result<RingResponse, EvalError> {
-        let RingTrials { forces, oil } = trials;
+        let RingTrials { forces, oil, .. } = trials;
         let (c0, omega, a) = (self.clearance, self.omega, &forces.axial);
         let external = a.gas + a.inertia + a.gravity + a.film + a.expander;
         let per = stage.step / (self.mass * c0 * omega * omega);

@@ -12,6 +12,7 @@
 use std::ops::Range;
 
 use gudgeon_core::EvalError;
+use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::{RingForces, RingTrials};
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::stages::StageNewton;
@@ -462,7 +463,8 @@ impl Pack {
         let ring = &mut self.rings[i];
         let (flank, oil) = (&ring.flank, &after[oil.start - own.end..oil.end - own.end]);
         let part = part(stage, own.clone());
-        let mut trials = RingTrials { forces: &mut forces, oil: &mut |place| flank.oil(oil, place) };
+        let mut reach = |place: &RingPlace| flank.oil(oil, place);
+        let mut trials = RingTrials::new(&mut forces, &mut reach);
         let response = ring.motion.stage(&part, &mut before[own], &mut trials)?;
         self.at.places[i] = forces.place;
         let r = &mut self.at.rings[i];

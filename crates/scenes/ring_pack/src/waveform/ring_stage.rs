@@ -136,7 +136,8 @@ impl<'a> RingStage<'a> {
         self.forces.axial = at.axial();
         let (motion, oil) = y.split_at_mut(m);
         let flank = &self.ring.flank;
-        let mut trials = RingTrials { forces: &mut self.forces, oil: &mut |place| flank.oil(oil, place) };
+        let mut reach = |place: &RingPlace| flank.oil(oil, place);
+        let mut trials = RingTrials::new(&mut self.forces, &mut reach);
         self.response = self.ring.motion.stage(&part, motion, &mut trials)?;
         Ok(())
     }
