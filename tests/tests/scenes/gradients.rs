@@ -72,8 +72,8 @@ fn blow_by_and_friction_by_inputs_are_those_of_differences() {
 
 /// Derivatives followed at about the tolerance of the case, in steps of which many have a corner of the rates in them, are those of a cycle that is followed in twice as
 /// many steps: two of three to two thousandths, all to four; elasticities below a hundredth to as much of that. The last digits move corners from step to step: of 24
-/// tolerances from 7e-5 to 1.5e-4 the derivative of the blow-by by the speed was off a cycle at 1e-9 by 7e-4 in the median and 2.3e-3 at most, and by 8e-4 and 2.6e-3 after another
-/// order of the same sums in the pressure of the cylinder; at tolerances from 1e-7 to 4e-7 by up to 1.1e-3. The tight ones were compared with differences of runs at 1e-9.
+/// tolerances from 7e-5 to 1.5e-4 the derivative of the blow-by by the speed was off a cycle at 1e-9 by 7e-4 in the median and 2.3e-3 at most, and by 8e-4 and 2.4e-3 after
+/// the pressure in the cylinder had changed in its last digits (2.6e-3 at 1e-4); at tolerances from 1e-7 to 4e-7 by up to 1.0e-3. The tight ones were compared with differences of runs at 1e-9.
 #[test]
 fn derivatives_depend_little_on_the_tolerance() {
     let inputs = by(&[
