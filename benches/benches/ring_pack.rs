@@ -44,6 +44,7 @@ fn table() -> Result<(), String> {
                 "solver.cycles=3",
                 "solver.clamp=inward",
                 "solver.steps_per_degree=16",
+                "models.flank.model=squeeze_film",
             ],
         ),
     ];

@@ -235,7 +235,7 @@ fn a_pack_without_films_has_one_half() {
     assert!((halves / whole - 1.0).abs() < 1e-3, "{halves} for {whole}");
 }
 
-/// Rings three times as heavy flutter, and films and grooves do not come to agree: the answer is that of the whole pack, and the run says so.
+/// Of rings three times as heavy one leaves the liner in the first cycle: the answer is that of the whole pack, and the run says so.
 #[test]
 fn halves_that_do_not_agree_are_integrated_whole() {
     let heavy = ["rings.0.mass=129 g", "rings.1.mass=111 g", "rings.2.mass=132 g"].map(String::from).to_vec();
@@ -245,7 +245,7 @@ fn halves_that_do_not_agree_are_integrated_whole() {
     };
     let r = runs(&[set(CASE, &with("waveform", "1e-2")), set(CASE, &with("rodas3", "3e-3"))]);
     let note = r[0].solver.notes.iter().find(|n| n.topic == "halves_apart").expect("it is told");
-    assert!(note.text.contains("did not come to agree"), "{}", note.text);
+    assert!(note.text.starts_with("a ring leaves the liner in the first cycle"), "{}", note.text);
     assert_eq!(r[0].results, r[1].results);
 }
 
@@ -271,7 +271,8 @@ fn a_search_begins_where_halves_end() {
     // 17 and 5 cycles from a cold start; 2 each when this was written.
     assert!(cycles(0, "coarse_cycles") > 8 && cycles(0, "cycles") <= 4);
     assert!(cycles(1, "coarse_cycles") > 2 && cycles(1, "cycles") <= 3);
-    assert!(cycles(2, "coarse_cycles") > 2 && r[2].solver.notes.iter().all(|n| n.topic != "halves_apart"));
+    // One of its rings leaves the liner.
+    assert!(cycles(2, "coarse_cycles") == 1 && r[2].solver.notes.iter().all(|n| n.topic != "halves_apart"));
     assert!(value(&r[2], "periodicity_error") <= 3e-3);
     assert!((3..6).all(|k| cycles(k, "coarse_cycles") == 0));
     // Nearer than the periodic state is asked to be found.
@@ -323,12 +324,13 @@ fn steps_of_the_cycle_before_are_taken_again() {
 }
 
 /// With oil on the liner halves may part for some cycles. Where they go on to do so they are given up as soon as that shows, and not after forty cycles: at all of nine speeds
-/// from 2600 to 2800 rpm after nine. (Below some 2500 rpm halves may also agree on another periodic state of this pack, whose ring 2 does not leave the liner.)
+/// from 2600 to 2800 rpm after nine. In the first cycle it is not looked for here: a ring leaves the liner in it.
 #[test]
 fn halves_with_oil_that_part_are_given_up_soon() {
     let own = [
         "solver.integrator=waveform",
         "solver.tolerance=5e-3",
+        "solver.limits.off_the_liner=1 mm",
         "engine.speed=2700 rpm",
         "rings.0.cold_gap=0.363 mm",
         "rings.0.mass=48.1 g",
@@ -341,6 +343,31 @@ fn halves_with_oil_that_part_are_given_up_soon() {
     assert!(cycles.is_some_and(|n: usize| n <= 9), "{}", note.text);
     // The whole pack is integrated to three tenths of the tolerance, its periodic state found to a hundredth.
     assert!(value(&r, "periodicity_error") <= 1e-2);
+}
+
+/// A pack with two periodic states, 64.2 and 57.0 l/min: from its own start it comes to the first, in which ring 2 leaves the liner, by plain cycles of the whole pack at tolerances of
+/// 1e-3 to 1e-5. Halves alone come to the second, and a search that they led ended there.
+#[test]
+fn a_search_ends_where_the_pack_goes_from_its_start() {
+    let pack = [
+        "engine.speed=2204.7 rpm",
+        "rings.0.cold_gap=0.3816 mm",
+        "rings.1.cold_gap=0.7831 mm",
+        "models.contact.composite_modulus=126.569 GPa",
+        "rings.1.mass=49.824 g",
+        "rings.0.mass=38.120 g",
+    ];
+    for own in [
+        ["solver.integrator=rodas3", "solver.tolerance=1e-4"],
+        ["solver.integrator=waveform", "solver.tolerance=1e-2"],
+    ] {
+        let r = run_case(CASE, &[&pack[..], &own].concat());
+        let (blow_by, friction) = (value(&r, "blow_by"), value(&r, "friction_power"));
+        println!("{own:?}: {blow_by} l/min, {friction} W");
+        // Of the run at 1e-5, which halves never led; here both are within 4e-4 of it. The other state is 11 and 33 % away.
+        assert!((blow_by / 64.171 - 1.0).abs() < 2e-3 && (friction / 464.05 - 1.0).abs() < 5e-3, "{own:?}");
+        assert!(r.solver.notes.iter().any(|n| n.topic == "off_the_liner.ring2"), "{:?}", r.solver.notes);
+    }
 }
 
 #[test]

@@ -794,6 +794,16 @@ impl<'a> Cycle<'a> {
         }
     }
 
+    /// Why a search in halves ended before its end.
+    fn why_whole(&self) -> String {
+        match &self.method {
+            Method::Waveform(w) if w.ring_leaves() => {
+                "a ring leaves the liner in the first cycle, and halves know a cycle later what gas that lets past".into()
+            }
+            _ => format!("films and the motion in the grooves did not come to agree in {} cycles", self.done),
+        }
+    }
+
     /// Judges how far the halves of the recorded cycle are apart, if it was integrated in the steps of the one before.
     fn judge(&self, report: &mut OrbitReport, tolerance: f64) {
         if let Method::Waveform(w) = &self.method

@@ -42,7 +42,8 @@ pub struct Limits {
     pub retreat_band: PosRatio,
     /// Radial gap kept behind a ring at the groove root, so that its gas volume stays one.
     pub min_room: PosLength,
-    /// Film thickness beyond which a ring has left the liner: flooded films of rings stay below 40 um. Only events and notes know it.
+    /// Film thickness beyond which a ring has left the liner: flooded films of rings stay below 40 um. Events and notes know it, and the search of the periodic state, which does
+    /// not go in halves where a ring is beyond it in the first cycle.
     pub off_the_liner: PosLength,
     /// Sliding speed over which boundary friction changes its sign, where no model of `boundary_friction` does that: a thousandth of a usual piston speed.
     pub friction_speed: PosVelocity,

@@ -628,6 +628,13 @@ impl Pack {
         self.layout.radial.iter().map(ExactSizeIterator::len).sum()
     }
 
+    /// Whether a ring is off the liner (`solver.limits.off_the_liner`) in the states `y`.
+    pub(super) fn retreats(&self, y: &[f64]) -> bool {
+        let films = self.rings.iter().zip(&self.layout.radial).filter(|(_, own)| !own.is_empty());
+        let mut thickness = films.map(|(ring, own)| ring.radial.thickness(&y[own.clone()]));
+        thickness.any(|h| h > self.limits.off_the_liner)
+    }
+
     /// Has the models decide what they decide in steps, from the forces of the last instant. Returns whether anything changed.
     pub fn decide_seats(&mut self) -> bool {
         let mut changed = false;

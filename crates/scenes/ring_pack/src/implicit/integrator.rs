@@ -19,7 +19,7 @@ pub enum RingIntegrator {
     Sdirk2,
     /// Gas with the rings in their grooves, and films, each at steps of its own over the whole cycle, in turns until both agree: the cheapest for errors of 1e-3,
     /// at a tolerance of 5e-3, with the stages of `sdirk2`. Within a step of the gas each ring takes as many as its own motion needs. For packs whose models solve
-    /// stages. Where rings flutter the two do not come to agree; the run tells so and integrates the pack whole.
+    /// stages. Where a ring leaves the liner in the first cycle, or the two do not come to agree, the run tells so and integrates the pack whole.
     Waveform,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,

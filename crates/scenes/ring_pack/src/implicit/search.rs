@@ -150,7 +150,9 @@ fn search(
     let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
     if s.integrator == RingIntegrator::Waveform && apart {
         let led = led + clock.seconds();
+        let why = cycle.why_whole();
         let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
+        solution.notes.push(integrated_whole(&why, whole_tolerance(s)));
         solution.seconds += led;
         return Ok(solution);
     }
@@ -194,7 +196,21 @@ fn search(
     })
 }
 
-/// Solves one start whose halves did not come to agree by the whole pack, and tells so.
+/// Tolerance at which a pack is integrated whole in place of halves.
+fn whole_tolerance(s: &Implicit) -> f64 {
+    WHOLE * s.tolerance.si()
+}
+
+/// What is said of a pack whose halves are no way to its periodic state.
+fn integrated_whole(why: &str, tolerance: f64) -> Note {
+    let text = format!(
+        "{why} (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance of {tolerance:.1e}. Where \
+         rings leave the liner or flutter, take that from the start"
+    );
+    Note::caution("halves_apart", text).of_numerics()
+}
+
+/// Solves one start by the whole pack, whose halves were no way.
 fn whole(
     s: &Implicit,
     (pack, start): (&mut Pack, f64),
@@ -202,7 +218,7 @@ fn whole(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     (cycles, work): (f64, &IndexMap<String, u64>),
 ) -> Result<Solution, RunError> {
-    let tolerance = quantity(WHOLE * s.tolerance.si());
+    let tolerance = quantity(whole_tolerance(s));
     let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
     pack.follow_passages(false);
     let mut begun = Start::cold(pack, start);
@@ -214,11 +230,5 @@ fn whole(
         *solution.counters.entry(name.clone()).or_default() += count;
     }
     solution.cycles += cycles;
-    let text = format!(
-        "films and the motion in the grooves did not come to agree in {cycles} cycles (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance \
-         of {:.1e}. Where rings flutter, take that from the start",
-        whole.tolerance.si()
-    );
-    solution.notes.push(Note::caution("halves_apart", text).of_numerics());
     Ok(solution)
 }
