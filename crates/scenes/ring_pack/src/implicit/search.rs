@@ -145,26 +145,28 @@ fn search(
     let turns = cycle.come_near(&mut y, &options)?;
     options.max_cycles = options.max_cycles.saturating_sub(turns);
     let closed = cycle.close(&mut y, &options);
-    let (mut counters, cycles, coarse) =
-        (counters(&cycle.stats), cycle.done, cycle.coarse + cycle.films_cycles);
+    let coarse = cycle.coarse + cycle.films_cycles;
     let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
     if s.integrator == RingIntegrator::Waveform && apart {
         let led = led + clock.seconds();
-        let why = cycle.why_whole();
-        let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
+        let (why, work) = (cycle.why_whole(), (cycle.done, counters(&cycle.stats)));
+        let mut solution = whole(s, (pack, start), wanted, progress, work)?;
         solution.notes.push(integrated_whole(&why, whole_tolerance(s)));
         solution.seconds += led;
         return Ok(solution);
     }
     let mut report = closed?;
+    let mut cycles = report.cycle_equivalents + turns as f64;
     let Taken { sampler, balance } = match cycle.taken.take() {
         Some(taken) => taken,
         None => {
             let taken = cycle.record(&mut y, tolerance).map_err(stopped)?;
             cycle.judge(&mut report, options.tolerance);
+            cycles += 1.0;
             taken
         }
     };
+    let mut counters = counters(&cycle.stats);
     let q = cycle.q;
     let (energy, momentum) = sampler.balance(pack);
     let gas_energy = pack.layout.gas_quad().and_then(|k| sampler.gas_ledger.closure(q[k]));
@@ -188,7 +190,7 @@ fn search(
         cycle: results::Cycle { totals, measures: sampler.measures },
         // Decisions that do not repeat are told by the caller, for every start.
         period: if report.converged || !discrete { report.period } else { 0 },
-        cycles: report.cycle_equivalents + turns as f64,
+        cycles,
         counters,
         notes,
         // With the cycle that is recorded, whether the search had foreseen that or not.
@@ -216,7 +218,7 @@ fn whole(
     (pack, start): (&mut Pack, f64),
     wanted: &Wanted<'_>,
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-    (cycles, work): (f64, &IndexMap<String, u64>),
+    (cycles, work): (f64, IndexMap<String, u64>),
 ) -> Result<Solution, RunError> {
     let tolerance = quantity(whole_tolerance(s));
     let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
@@ -227,7 +229,7 @@ fn whole(
     }
     let mut solution = search(&whole, (pack, begun), wanted, progress, start)?;
     for (name, count) in work {
-        *solution.counters.entry(name.clone()).or_default() += count;
+        *solution.counters.entry(name).or_default() += count;
     }
     solution.cycles += cycles;
     Ok(solution)
