@@ -157,6 +157,9 @@ impl OrbitReport {
 const FRESH: f64 = 1e-9;
 /// Differences of earlier iterates that the acceleration keeps.
 const DEPTH: usize = 8;
+/// Times that a start is cut off to the last one before plain repetition takes over, and the part of the residual within which it is that one: secants of a search that gets on step by about
+/// the residual.
+const STANDS: (usize, f64) = (3, 0.05);
 /// Longest repetition that is looked for.
 const MAX_PERIOD: usize = 4;
 /// Multiplier beyond which the errors of the steps of many cycles add up.
@@ -441,8 +444,13 @@ impl Search {
             for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
                 *y = n * s;
             }
+            let wanted = y.to_vec();
             map.admit(&g, y);
             extrapolated = true;
+            self.stuck = state.stands(&at, y, &wanted, residual);
+            if self.stuck {
+                break;
+            }
             if state.passed > 0.0
                 || k >= SETTLES[usize::from(near)] && promises((estimate, residual), fall, options)
             {
@@ -723,6 +731,8 @@ struct Anderson {
     stalled: usize,
     /// The cycle before.
     previous: Option<Tried>,
+    /// Times that the start was cut off to the last one.
+    standing: usize,
     /// Longest step: the states are no larger, and less where the machine could not follow.
     reach: f64,
     /// Smallest residual.
@@ -745,6 +755,7 @@ impl Anderson {
             idle: 0,
             stalled: 0,
             previous: None,
+            standing: 0,
             reach: 1.0,
             best: f64::INFINITY,
             passed: 0.0,
@@ -770,6 +781,15 @@ impl Anderson {
         let at = DVector::from_iterator(n, y.iter().zip(&self.s).map(|(y, s)| y / s));
         let r = DVector::from_iterator(n, g.iter().zip(y).zip(&self.s).map(|((g, y), s)| (g - y) / s));
         (at, r)
+    }
+
+    /// Whether the next start `y`, cut off from the `wanted` one, has been the last one, `at`, several times beside the residual of the cycle from there: the secants lead out of what the
+    /// machine admits, as to a fixed point that repels, and would lead there for ever.
+    fn stands(&mut self, at: &DVector<f64>, y: &[f64], wanted: &[f64], residual: f64) -> bool {
+        let moved = at.iter().zip(y).zip(&self.s).map(|((at, y), s)| (y / s - at).abs());
+        let stands = y != wanted && moved.fold(0.0, f64::max) <= STANDS.1 * residual;
+        self.standing = if stands { self.standing + 1 } else { 0 };
+        self.standing >= STANDS.0
     }
 
     /// Takes the secant to the cycle before, whose map was as accurate as `noise`. Returns how slowly decays what the secants did not
