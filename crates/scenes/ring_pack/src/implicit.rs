@@ -798,7 +798,7 @@ impl<'a> Cycle<'a> {
     fn why_whole(&self) -> String {
         match &self.method {
             Method::Waveform(w) if w.ring_leaves() => {
-                "a ring leaves the liner in the first cycle, and halves know a cycle later what gas that lets past".into()
+                "a ring leaves the liner in the first cycle, from where halves may come to another periodic state".into()
             }
             _ => format!("films and the motion in the grooves did not come to agree in {} cycles", self.done),
         }
