@@ -12,6 +12,8 @@ pub struct Rule {
     pub weights: &'static [f64],
     /// Barycentric weights of the interpolation.
     barycentric: &'static [f64],
+    /// How far the polynomial can rise above the highest sample, as a part of the range of all: half of the Lebesgue constant less one, rounded up.
+    pub overshoot: f64,
 }
 
 /// `(1 - sqrt(3/7)) / 2`.
@@ -22,6 +24,8 @@ pub const LOBATTO: Rule = Rule {
     nodes: &[0.0, INNER, 0.5, 1.0 - INNER, 1.0],
     weights: &[1.0 / 20.0, 49.0 / 180.0, 16.0 / 45.0, 49.0 / 180.0, 1.0 / 20.0],
     barycentric: &[7.0 / 8.0, -49.0 / 24.0, 7.0 / 3.0, -49.0 / 24.0, 7.0 / 8.0],
+    // A Lebesgue constant of 1.636.
+    overshoot: 0.32,
 };
 
 /// Both ends and the middle: exact for the integral of polynomials to degree 3.
@@ -29,14 +33,14 @@ pub const SIMPSON: Rule = Rule {
     nodes: &[0.0, 0.5, 1.0],
     weights: &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
     barycentric: &[2.0, -4.0, 2.0],
+    // 5/4; and what is rounded.
+    overshoot: 0.125 + 1e-9,
 };
 
 /// Both ends and a straight line between them.
-pub const TRAPEZIUM: Rule = Rule { nodes: &[0.0, 1.0], weights: &[0.5, 0.5], barycentric: &[-1.0, 1.0] };
+pub const TRAPEZIUM: Rule =
+    Rule { nodes: &[0.0, 1.0], weights: &[0.5, 0.5], barycentric: &[-1.0, 1.0], overshoot: 0.0 };
 
-/// How far a polynomial through samples can rise above the highest of them, as a part of the range they span: half of the Lebesgue
-/// constant of five points of Lobatto (1.636) less one, rounded up.
-pub const OVERSHOOT: f64 = 0.32;
 /// Parts of a step in which turning points and crossings are looked for; a polynomial of degree 4 turns three times at most.
 const PARTS: usize = 16;
 /// Most steps to a turning point: Newton's method, with halvings where that leaves the bracket.
@@ -71,21 +75,11 @@ impl Rule {
     #[must_use]
     pub fn maximum(&self, values: &[f64], floor: f64) -> Option<(f64, f64)> {
         let (low, high) = span(values);
-        if high + OVERSHOOT * (high - low) <= floor {
+        if high + self.overshoot * (high - low) <= floor {
             return None;
         }
-        let curve = Curve::new(self.nodes, values);
-        let mut best = (0.0, values[0]);
-        for k in 1..=PARTS {
-            let x = k as f64 / PARTS as f64;
-            let v = curve.value(x);
-            if v > best.1 {
-                best = (x, v);
-            }
-        }
-        let width = 1.0 / PARTS as f64;
-        let turn = curve.turn((best.0 - width).max(0.0), (best.0 + width).min(1.0), 1.0);
-        best = turn.map_or((best.0, self.value(values, best.0)), |x| (x, self.value(values, x)));
+        let x = Curve::new(self.nodes, values).highest();
+        let mut best = (x, self.value(values, x));
         // A straight line or a jump: the samples themselves.
         for (x, v) in self.nodes.iter().zip(values) {
             if *v > best.1 {
@@ -108,7 +102,7 @@ impl Rule {
     /// Calls `cross` at every place where the polynomial goes through `level`, in order, with whether it rises there.
     pub fn crossings(&self, values: &[f64], level: f64, mut cross: impl FnMut(f64, bool)) {
         let (low, high) = span(values);
-        let reach = OVERSHOOT * (high - low);
+        let reach = self.overshoot * (high - low);
         if low - reach > level || high + reach <= level {
             return;
         }
@@ -138,6 +132,10 @@ impl Rule {
             return (first - last).max(0.0);
         }
         let curve = Curve::new(self.nodes, values);
+        if let Some(x) = curve.vertex() {
+            let turn = self.value(values, x);
+            return (first - turn).max(0.0) + (turn - last).max(0.0);
+        }
         let at = |k: usize| curve.value(k as f64 / PARTS as f64);
         let (mut sum, mut from) = (0.0, first);
         let (mut before, mut now) = (first, at(1));
@@ -173,6 +171,31 @@ impl Curve {
             }
         }
         Self { nodes, c }
+    }
+
+    /// Where the parabola through three samples turns, or the end of the step where it turns nowhere in it; of another number of samples nothing.
+    fn vertex(&self) -> Option<f64> {
+        let &[a, b, _] = self.nodes else { return None };
+        let [_, first, second, ..] = self.c;
+        let x = 0.5 * (a + b - first / second);
+        Some(if x > 0.0 && x < 1.0 { x } else { 1.0 })
+    }
+
+    /// Where it is highest, if not at a sample.
+    fn highest(&self) -> f64 {
+        if let Some(x) = self.vertex() {
+            return x;
+        }
+        let mut best = (0.0, self.value(0.0));
+        for k in 1..=PARTS {
+            let x = k as f64 / PARTS as f64;
+            let v = self.value(x);
+            if v > best.1 {
+                best = (x, v);
+            }
+        }
+        let width = 1.0 / PARTS as f64;
+        self.turn((best.0 - width).max(0.0), (best.0 + width).min(1.0), 1.0).unwrap_or(best.0)
     }
 
     fn value(&self, x: f64) -> f64 {

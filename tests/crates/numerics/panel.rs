@@ -1,6 +1,6 @@
 //! The polynomial through the samples of a step.
 
-use gudgeon_numerics::panel::{LOBATTO, OVERSHOOT, SIMPSON, TRAPEZIUM};
+use gudgeon_numerics::panel::{LOBATTO, SIMPSON, TRAPEZIUM};
 
 fn sampled(f: impl Fn(f64) -> f64) -> Vec<f64> {
     LOBATTO.nodes.iter().map(|x| f(*x)).collect()
@@ -42,10 +42,17 @@ fn extremes_lie_between_the_samples() {
 #[test]
 fn the_bound_that_spares_the_search_holds() {
     // The worst samples for the overshoot: both signs of the Lebesgue function.
-    for bits in 0..32_u32 {
-        let v: Vec<f64> = (0..5).map(|k| f64::from((bits >> k) & 1)).collect();
-        let top = (0..=2000).map(|k| LOBATTO.value(&v, f64::from(k) / 2000.0)).fold(f64::MIN, f64::max);
-        assert!(top <= 1.0 + OVERSHOOT, "{bits}: {top}");
+    for rule in [LOBATTO, SIMPSON, TRAPEZIUM] {
+        let n = rule.nodes.len();
+        let mut highest = 0.0_f64;
+        for bits in 0..1_u32 << n {
+            let v: Vec<f64> = (0..n).map(|k| f64::from((bits >> k) & 1)).collect();
+            let top = (0..=2000).map(|k| rule.value(&v, f64::from(k) / 2000.0)).fold(f64::MIN, f64::max);
+            assert!(top <= 1.0 + rule.overshoot, "{n} {bits}: {top}");
+            highest = highest.max(top - 1.0);
+        }
+        // No wider than it need be.
+        assert!(rule.overshoot - highest < 5e-3, "{n}: {highest}");
     }
 }
 
@@ -168,6 +175,18 @@ fn three_samples_are_exact_for_the_integral_of_a_cubic_and_through_a_parabola() 
         assert!((SIMPSON.value(&v, x) - parabola(x)).abs() < 1e-14, "{x}");
     }
     let (x, top) = SIMPSON.maximum(&v, 0.0).expect("above");
-    // Newton's method to rounding; the top is flat there.
-    assert!((x - 0.375).abs() < 1e-12 && (top - 1.5625).abs() < 1e-14, "{x} {top}");
+    // A quotient of differences of a tenth; the top is flat there.
+    assert!((x - 0.375).abs() < 1e-14 && (top - 1.5625).abs() < 1e-14, "{x} {top}");
+    assert_eq!(SIMPSON.maximum(&v, 1.6), None);
+    // Up to the top and down from there; upside down the way up is what falls.
+    assert!((SIMPSON.fall(&v) - 1.5625).abs() < 1e-14);
+    let down: Vec<f64> = v.iter().map(|v| -v).collect();
+    assert!((SIMPSON.fall(&down) - 0.5625).abs() < 1e-14);
+    assert!(SIMPSON.minimum(&down, 0.0).is_some_and(|(at, low)| at == x && low == -top));
+    // One that turns before the step, a straight line, and what stands still.
+    assert_eq!(SIMPSON.maximum(&[3.0, 2.0, 0.0], 0.0), Some((0.0, 3.0)));
+    assert_eq!(SIMPSON.maximum(&[1.0, 2.0, 3.0], 0.0), Some((1.0, 3.0)));
+    assert_eq!(SIMPSON.minimum(&[1.0, 2.0, 3.0], 2.0), Some((0.0, 1.0)));
+    assert_eq!((SIMPSON.fall(&[2.0; 3]), SIMPSON.fall(&[1.0, 2.0, 3.0])), (0.0, 0.0));
+    assert!(SIMPSON.maximum(&[2.0; 3], 1.0).is_some_and(|(_, top)| top == 2.0));
 }
