@@ -30,12 +30,27 @@ fn slow_share(x: f64) -> f64 {
 #[inline]
 #[must_use]
 pub fn turbulent_share(reynolds: f64) -> (f64, f64) {
-    // The bound keeps the cube a number.
-    let x = (reynolds / TRANSITION).min(1e100);
-    let cube = x * x * x;
-    let share =
-        if cube < SLOW { slow_share(cube) } else { elementary::exp(elementary::ln(1.0 + cube) / -7.0) };
+    let cube = cube(reynolds);
+    let share = share_at(cube);
     (share, share * (1.0 - 3.0 / 7.0 * cube / (1.0 + cube)))
+}
+
+/// The first of [`turbulent_share`].
+#[inline]
+pub(crate) fn flow_share(reynolds: f64) -> f64 {
+    share_at(cube(reynolds))
+}
+
+/// Cube of `Re/Re_c`, bounded so that it stays a number.
+#[inline]
+fn cube(reynolds: f64) -> f64 {
+    let x = (reynolds * (1.0 / TRANSITION)).min(1e100);
+    x * x * x
+}
+
+#[inline]
+fn share_at(cube: f64) -> f64 {
+    if cube < SLOW { slow_share(cube) } else { elementary::exp(elementary::ln(1.0 + cube) * (-1.0 / 7.0)) }
 }
 
 /// Dynamic viscosity \[Pa s\] of air at the temperature \[K\] by Sutherland's law,

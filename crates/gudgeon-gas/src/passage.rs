@@ -1,6 +1,6 @@
 //! The passages of the built-in models: orifices, narrow channels, and their combinations.
 
-use crate::channel::turbulent_share;
+use crate::channel::{flow_share, turbulent_share};
 use crate::orifice_law::OrificeLaw;
 use crate::passage_law::{Area, FlowPartials, GasState, Link, Node, PassageLaw};
 use gudgeon_core::elementary;
@@ -238,7 +238,7 @@ fn channel_partials(k: f64, a: &GasState, b: &GasState) -> FlowPartials {
 /// What turbulence leaves of the laminar flow `c` \[kg/s\] of a channel.
 #[inline]
 fn turbulent(c: f64, unit_flow: f64) -> f64 {
-    c * turbulent_share(c.abs() / unit_flow).0
+    c * flow_share(c.abs() / unit_flow)
 }
 
 /// The same with its partial derivatives.

@@ -86,7 +86,10 @@ impl Runtime {
     fn resist(&self, s: f64, clearance: f64, area: f64) -> FlankResistance {
         let circumference = area / self.width;
         let [lower, upper] = [s, clearance - s].map(|h| {
-            [self.gas.film(self.width, h.max(0.0) + self.roughness, circumference), FlankFilm::default()]
+            [
+                self.gas.film(self.width, 1.0 / (h.max(0.0) + self.roughness), circumference),
+                FlankFilm::default(),
+            ]
         });
         FlankResistance { lower, upper }
     }

@@ -18,9 +18,9 @@ pub(super) struct GasGap {
 }
 
 impl GasGap {
-    /// The film of gas `width` wide in a gap \[m\], over a `circumference` \[m\].
-    pub fn film(&self, width: f64, gap: f64, circumference: f64) -> FlankFilm {
-        let slenderness = width / gap;
+    /// The film of gas `width` wide \[m\], over a `circumference` \[m\]; `per_gap` one over the gap \[1/m\].
+    pub fn film(&self, width: f64, per_gap: f64, circumference: f64) -> FlankFilm {
+        let slenderness = width * per_gap;
         let damping = circumference * self.viscosity * slenderness * slenderness * slenderness;
         FlankFilm { approach: damping, apart: damping, tension: circumference * self.tension * width }
     }

@@ -115,6 +115,7 @@ impl FlankSpec for WettedStrip {
         let strip = Strip {
             mu: ctx.mu,
             width: ctx.width,
+            per_width: ctx.width.recip(),
             roughness: self.roughness.si(),
             separation: self.separation.si(),
             tension: self.tension.si(),
@@ -132,7 +133,7 @@ impl FlankSpec for WettedStrip {
         // Without crank there is nothing to integrate by.
         let wet = strip.supply > 0.0 && ctx.omega > 0.0;
         let states = if wet { vec![state("lower"), state("upper")] } else { Vec::new() };
-        Ok(Box::new(Runtime { strip, omega: ctx.omega, states }))
+        Ok(Box::new(Runtime { strip, per_supply: (strip.supply * ctx.omega).recip(), states }))
     }
 
     fn follows_oil(&self) -> bool {
@@ -145,6 +146,7 @@ impl FlankSpec for WettedStrip {
 struct Strip {
     mu: f64,
     width: f64,
+    per_width: f64,
     roughness: f64,
     separation: f64,
     tension: f64,
@@ -175,27 +177,25 @@ impl Strip {
         (bridged, free / (free + self.width * self.width * square))
     }
 
-    /// Oil and gas between a flank and a ring `h` \[m\] above it, over a `circumference` \[m\].
-    fn films(&self, wetted: f64, h: f64, circumference: f64) -> [FlankFilm; FLANK_FILMS] {
-        let gap = self.gap(h);
+    /// Oil and gas between a flank and a ring, over a `circumference` \[m\]; `per_gap` one over the gap \[1/m\].
+    fn films(&self, wetted: f64, per_gap: f64, circumference: f64) -> [FlankFilm; FLANK_FILMS] {
         // A state that is extrapolated may hold less than nothing, which resists nothing.
         let bridged = wetted.max(0.0);
-        let slenderness = bridged / gap;
+        let slenderness = bridged * per_gap;
         let approach = circumference * self.mu * slenderness * slenderness * slenderness;
         let tension = circumference * self.tension * bridged;
         [
             FlankFilm { approach, apart: self.separation * approach, tension },
-            self.gas.film(self.width - wetted, gap, circumference),
+            self.gas.film(self.width - wetted, per_gap, circumference),
         ]
     }
 
     fn resist(&self, oil: &FlankOil, s: f64, clearance: f64, area: f64) -> FlankResistance {
-        let circumference = area / self.width;
-        let [lower, upper] = oil.wetted;
-        FlankResistance {
-            lower: self.films(lower, s, circumference),
-            upper: self.films(upper, clearance - s, circumference),
-        }
+        let circumference = area * self.per_width;
+        // One quotient for oil and gas, before it is known where the oil is: this is asked at every look at a ring.
+        let per_gap = [s, clearance - s].map(|h| self.gap(h)).map(|gap| 1.0 / gap);
+        let [lower, upper] = [0, 1].map(|k| self.films(oil.wetted[k], per_gap[k], circumference));
+        FlankResistance { lower, upper }
     }
 
     /// What comes to a strip of `oil` \[m²\] and leaves it, while the flank approaches with `rate` under a pressure difference.
@@ -215,7 +215,8 @@ impl Strip {
 
 struct Runtime {
     strip: Strip,
-    omega: f64,
+    /// One over the flow \[m²/s\] that brings the supply in a radian.
+    per_supply: f64,
     /// Oil on the lower and the upper flank, over the supply.
     states: Vec<StateInfo>,
 }
@@ -270,7 +271,7 @@ impl Flank for Runtime {
         let mut sum = FlankFlow::default();
         for (k, dy) in dy.iter_mut().enumerate() {
             let flow = self.strip.flow(oil[k], place.flank.wetted[k], h[k], rate[k], dp[k]);
-            *dy = (flow.fed - flow.lost) / (self.strip.supply * self.omega);
+            *dy = (flow.fed - flow.lost) * self.per_supply;
             sum.fed += flow.fed;
             sum.lost += flow.lost;
         }

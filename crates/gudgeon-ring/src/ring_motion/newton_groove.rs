@@ -1,6 +1,6 @@
 //! The ring as a mass that moves between the groove flanks.
 
-use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::geometry::{FlankOil, RingPlace};
 use gudgeon_core::kinds::{
     FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, RingTrials,
     SecondOrder,
@@ -121,12 +121,12 @@ impl RingMotionSpec for NewtonGroove {
             gravity: self.gravity,
             film_force: self.film_force,
             damping: ctx.damping,
-            mass: ctx.mass,
+            per_inertia: (ctx.mass * unit_speed * ctx.omega).recip(),
             clearance: ctx.clearance,
-            omega: ctx.omega,
             holding: Holding::new(ctx.mass, unit_speed, ctx.omega),
             forces: RingForces::default(),
             v: 0.0,
+            gap: 0.0,
             stiffness: None,
         }))
     }
@@ -148,16 +148,22 @@ struct Runtime {
     gravity: bool,
     film_force: bool,
     damping: Box<dyn FlankLaw>,
-    mass: f64,
+    /// One over the force \[N\] that changes the velocity state by one a radian.
+    per_inertia: f64,
     clearance: f64,
-    omega: f64,
     holding: Holding,
-    /// Forces of the last instant.
+    /// Forces of the last instant whose rates were asked for, where the ring may be held.
     forces: RingForces,
-    /// Velocity \[m/s\] of the last instant.
+    /// Velocity \[m/s\] of the last instant, and the distance from the nearer flank \[m\].
     v: f64,
+    gap: f64,
     /// Derivative of the balance of the last stage by the velocity state beyond that of inertia and damping, over the square of the length of the stage: that by the height.
     stiffness: Option<f64>,
+}
+
+/// Distance from the nearer flank \[m\].
+fn gap(place: &RingPlace) -> f64 {
+    place.s.min(place.clearance - place.s)
 }
 
 impl Runtime {
@@ -184,7 +190,7 @@ impl RingMotion for Runtime {
     }
 
     fn pose(&self, y: &[f64], clearance: f64) -> RingPose {
-        RingPose::at_height(y[0] * self.clearance, y[1] * self.clearance * self.omega, clearance)
+        RingPose::at_height(y[0] * self.clearance, y[1] * self.holding.unit_speed, clearance)
     }
 
     fn rates(&mut self, y: &[f64], forces: &RingForces, dy: &mut [f64]) -> Result<RingResponse, EvalError> {
@@ -198,16 +204,18 @@ impl RingMotion for Runtime {
             let v = self.holding.velocity(&balance, self.v);
             (v, balance.damping(v), balance.reaction(v))
         };
-        let (c0, omega) = (self.clearance, self.omega);
         if hold == Hold::Free {
             let mut axial = forces.axial;
             axial.damping = damping;
-            dy.copy_from_slice(&[y[1], (axial.sum() + reaction) / self.mass / (c0 * omega * omega)]);
+            dy.copy_from_slice(&[y[1], (axial.sum() + reaction) * self.per_inertia]);
         } else {
-            dy.copy_from_slice(&[v / (c0 * omega), 0.0]);
+            dy.copy_from_slice(&[v / self.holding.unit_speed, 0.0]);
         }
         if !self.holding.differences {
-            (self.forces, self.v) = (*forces, v);
+            (self.v, self.gap) = (v, gap(&forces.place));
+            if self.n_events() > 0 {
+                self.forces = *forces;
+            }
         }
         Ok(RingResponse::new(v, damping, reaction))
     }
@@ -225,33 +233,33 @@ impl RingMotion for Runtime {
         trials: &mut RingTrials<'_>,
     ) -> Result<RingResponse, EvalError> {
         let RingTrials { forces, oil, .. } = trials;
-        let (c0, omega, a) = (self.clearance, self.omega, &forces.axial);
+        let (c0, unit_speed, a) = (self.clearance, self.holding.unit_speed, &forces.axial);
         let external = a.gas + a.inertia + a.gravity + a.film + a.expander;
-        let per = stage.step / (self.mass * c0 * omega * omega);
+        let (per, per_step) = (stage.step * self.per_inertia, 1.0 / stage.step);
         let mut response = RingResponse::default();
         let place = &mut forces.place;
         let (clearance, area) = (place.clearance, place.flank_area());
         let balance = |u: f64| -> Result<(f64, f64), EvalError> {
             let height = stage.base[0] + stage.step * u;
-            let (s, v) = (height * c0, u * c0 * omega);
+            let (s, v) = (height * c0, u * unit_speed);
             RingPose::at_height(s, v, clearance).put(place);
             place.flank = oil(place);
             let (damping, falls) = self.damping.force_and_damping(&place.flank, s, v, clearance, area);
             response = RingResponse::new(v, damping, self.flank.reaction(s, v, clearance));
             let falls = falls + self.flank.damping(s, v, clearance);
             let lacks = u - stage.base[1] - per * (external + damping + response.reaction);
-            Ok((lacks, 1.0 + per * c0 * omega * falls))
+            Ok((lacks, 1.0 + per * unit_speed * falls))
         };
-        let tol = stage.accuracy[0] / stage.step;
+        let tol = stage.accuracy[0] * per_step;
         let rest = self.stiffness.map(|s| s * stage.step * stage.step);
-        let known = Known { from: 0.0, guess: y[1], rest, reach: FARTHEST / stage.step, tol };
+        let known = Known { from: 0.0, guess: y[1], rest, reach: FARTHEST * per_step, tol };
         let found = first_root(balance, known).map_err(|e| match e {
             RootError::Function(e) => e,
             e => EvalError::recoverable("ring_motion", e.to_string()),
         })?;
         (y[0], y[1]) = (stage.base[0] + stage.step * found.x, found.x);
-        (self.stiffness, self.v) = (found.rest.map(|r| r / (stage.step * stage.step)), response.v);
-        self.forces = **forces;
+        (self.stiffness, self.v) = (found.rest.map(|r| r * per_step * per_step), response.v);
+        self.gap = gap(&forces.place);
         Ok(response)
     }
 
@@ -299,9 +307,7 @@ impl Stateful for Runtime {
 
     /// The position is judged by the distance from the flank.
     fn ease(&self, atol: &mut [f64]) {
-        let place = &self.forces.place;
-        let gap = place.s.min(place.clearance - place.s) / self.clearance;
-        atol[0] *= (gap / HEIGHT_SCALE).max(1.0);
+        atol[0] *= (self.gap / self.clearance / HEIGHT_SCALE).max(1.0);
     }
 
     fn is_integrated(&self, k: usize) -> bool {
