@@ -263,7 +263,17 @@ pub(super) fn flat(text: &str) -> String {
         && !bytes.windows(2).any(|two| two == b"  ")
         && !text.starts_with(' ')
         && !text.ends_with(' ');
-    if plain { text.to_owned() } else { text.split_whitespace().collect::<Vec<_>>().join(" ") }
+    if plain {
+        return text.to_owned();
+    }
+    let mut line = String::with_capacity(text.len());
+    for word in text.split_whitespace() {
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    line
 }
 
 /// The unit in which a number has one to three digits before its point; temperatures are read in degrees Celsius, speeds of rotation in rpm.

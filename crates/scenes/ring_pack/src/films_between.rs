@@ -81,11 +81,12 @@ impl FilmsBetween {
 fn between(weights: &[f64; 3], a: &Told, b: &Told, c: &Told) -> Told {
     let (lower, higher) =
         (|a: f64, b: f64| if a < b { a } else { b }, |a: f64, b: f64| if a > b { a } else { b });
-    std::array::from_fn(|k| {
-        let (a, b, c) = (a[k], b[k], c[k]);
+    let mut out = [0.0; COUNT];
+    for (out, ((a, b), c)) in out.iter_mut().zip(a.iter().zip(b).zip(c)) {
         let parabola = weights[0] * a + weights[1] * b + weights[2] * c;
-        lower(higher(parabola, lower(lower(a, b), c)), higher(higher(a, b), c))
-    })
+        *out = lower(higher(parabola, lower(lower(*a, *b), *c)), higher(higher(*a, *b), *c));
+    }
+    out
 }
 
 /// Has films do what is known of them.

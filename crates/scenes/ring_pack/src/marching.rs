@@ -103,7 +103,7 @@ impl Books {
         pack.hard_floor = true;
         pack.follow_passages(false);
         Self {
-            record: Record::new(pack),
+            record: Record::new(pack, 0),
             measures: Measures::new(pack, TRAPEZIUM, wanted.seat),
             watch: Watch::new(pack),
             seat: wanted.seat,

@@ -400,7 +400,7 @@ impl Pack {
         done
     }
 
-    /// The same for films that are known: what these carry, and what they cost, is found for the instant.
+    /// The same for films that are known: what these carry, and what they cost, is found for the instant. How fast the oil on the flanks changes is not.
     pub fn evaluate_beside(
         &mut self,
         films: impl Iterator<Item = Told>,
@@ -416,7 +416,9 @@ impl Pack {
         tell(films, &mut self.at.rings);
         for i in 0..self.n_rings() {
             self.friction_beside(i)?;
-            self.in_groove(i, y)?;
+            if self.plan.axial {
+                self.axial_forces(i, y)?;
+            }
         }
         self.state.copy_from_slice(y);
         self.complete = true;

@@ -100,12 +100,13 @@ pub struct Record {
 }
 
 impl Record {
-    /// Columns that this pack computes.
+    /// Columns that this pack computes, with room for as many rows.
     #[must_use]
-    pub fn new(pack: &Pack) -> Self {
+    pub fn new(pack: &Pack, rows: usize) -> Self {
         let mut columns = Vec::new();
-        let mut add =
-            |name: String, unit: &str| columns.push(Column { name, unit: unit.into(), values: Vec::new() });
+        let mut add = |name: String, unit: &str| {
+            columns.push(Column { name, unit: unit.into(), values: Vec::with_capacity(rows) });
+        };
         let n = pack.n_rings();
         for (name, unit) in
             [("piston.y", "m"), ("piston.v", "m/s"), ("piston.a", "m/s2"), ("cylinder.p", "Pa")]
@@ -176,7 +177,7 @@ impl Record {
                 add(format!("{prefix}.{}", c.name), c.unit);
             }
         }
-        Self { theta: Vec::new(), columns }
+        Self { theta: Vec::with_capacity(rows), columns }
     }
 
     /// Adds the instant that `pack` holds, as crank angle `theta` \[rad\]; `entered`: gas \[kg\] that has entered each ring since the cycle

@@ -20,8 +20,9 @@ pub struct Rows {
     q: Vec<f64>,
     /// Flows \[kg/s\] past each ring and to the crankcase, of every row but the first.
     flows: Vec<f64>,
-    /// What the models remember beside their states.
+    /// What the models remember beside their states, of the first row and of every other whose films are not known; so many numbers of each.
     memory: Vec<f64>,
+    remembered: usize,
     /// What the films did, of every row but the first, where that is known.
     films: Vec<Told>,
     /// What has passed on either side of a row, scratch.
@@ -36,22 +37,18 @@ const BESIDE: f64 = 1e-3;
 impl Rows {
     /// Rows `step` \[rad\] apart, or the nearest whole part of a cycle.
     #[must_use]
-    pub fn new(pack: &mut Pack, step: f64) -> Self {
+    pub fn new(pack: &Pack, step: f64) -> Self {
         let period = pack.period();
         let rows = (period / step).round().max(1.0) as usize;
         let (flows, count) = (pack.n_rings() + 1, rows + 1);
-        let mut memory = Vec::new();
-        pack.save(&mut memory);
-        let kept = memory.len();
-        memory.clear();
-        memory.reserve(count * kept);
         Self {
             grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
             theta: Vec::with_capacity(count),
             y: Vec::with_capacity(count * pack.layout.n),
             q: Vec::with_capacity(count * flows),
             flows: Vec::with_capacity(count * flows),
-            memory,
+            memory: Vec::new(),
+            remembered: 0,
             films: Vec::new(),
             beside: [vec![0.0; flows], vec![0.0; flows]],
         }
@@ -60,6 +57,8 @@ impl Rows {
     /// Keeps the start of the cycle.
     pub fn start(&mut self, pack: &mut Pack, y: &[f64]) {
         self.keep(pack, 0.0, |to| to.copy_from_slice(y), |q| q.fill(0.0));
+        pack.save(&mut self.memory);
+        self.remembered = self.memory.len();
     }
 
     /// Keeps the rows of an accepted step. To be called before its oil is booked.
@@ -70,7 +69,10 @@ impl Rows {
             let t = row.min(v.t1());
             self.keep(pack, t, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
             self.keep_flows(pack, v, t);
-            self.films.extend(pack.between.iter().flat_map(|films| films.at(t)));
+            match &pack.between {
+                Some(films) => self.films.extend(films.at(t)),
+                None => pack.save(&mut self.memory),
+            }
         }
     }
 
@@ -102,7 +104,6 @@ impl Rows {
         if let Some(oil) = &mut pack.oil_pack {
             oil.place(&self.y[y..][pack.layout.oil.clone()], pack.kinematics.motion(t).y);
         }
-        pack.save(&mut self.memory);
     }
 
     /// Evaluates the rows.
@@ -110,15 +111,14 @@ impl Rows {
     /// # Errors
     /// What a sub-model refuses.
     pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
-        let mut record = Record::new(pack);
+        let mut record = Record::new(pack, self.theta.len());
         let (n, dim) = (pack.n_rings(), pack.layout.n);
-        let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
             let y = &self.y[k * dim..][..dim];
             if let Some(films) = k.checked_sub(1).and_then(|k| self.films.get(k * n..(k + 1) * n)) {
                 pack.evaluate_beside(films.iter().copied(), theta, y)?;
             } else {
-                pack.evaluate_again(theta, y, Some(&self.memory[k * kept..][..kept]))?;
+                pack.evaluate_again(theta, y, Some(&self.memory[k * self.remembered..][..self.remembered]))?;
                 (0..n).try_for_each(|i| pack.film_peak(i))?;
             }
             let passed = &self.q[k * (n + 1)..][..=n];

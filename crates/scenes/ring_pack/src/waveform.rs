@@ -648,8 +648,8 @@ impl OdeSystem for OneSide<'_> {
             repeat.apply(t, stage, y);
         }
         self.fill(t, y);
-        for (j, &k) in self.part.states.iter().enumerate() {
-            (self.base[k], self.accuracy[k]) = (stage.base[j], stage.accuracy[j]);
+        for ((&k, base), accuracy) in self.part.states.iter().zip(stage.base).zip(stage.accuracy) {
+            (self.base[k], self.accuracy[k]) = (*base, *accuracy);
         }
         let whole = Stage { base: &self.base, accuracy: &self.accuracy, ..*stage };
         self.pack.stage_of(self.side, (t, p), &whole, &mut self.y, &self.axial, self.staging)?;

@@ -121,8 +121,8 @@ impl<'a> RingStage<'a> {
             }
             let before = *y;
             let lost = self.oil(stage, y, at)?;
-            let moved = (m..n).map(|j| ((y[j] - before[j]) / stage.accuracy[j]).abs()).fold(0.0, f64::max);
-            if m == 0 || moved <= SETTLED {
+            let settled = |j: usize| (y[j] - before[j]).abs() <= SETTLED * stage.accuracy[j];
+            if m == 0 || (m..n).all(settled) {
                 return Ok(lost);
             }
         }
@@ -154,7 +154,7 @@ impl<'a> RingStage<'a> {
             }
             let at = FlankIn::new(place, above, behind, below);
             let lost = self.ring.flank.rates(&y[m..n], &at, &mut dy[m..n])?.lost;
-            let mut farthest = 0.0_f64;
+            let mut settled = true;
             for j in m..n {
                 let now = y[j] - stage.base[j] - stage.step * dy[j];
                 if look > 0 && steps[j] != 0.0 {
@@ -165,9 +165,9 @@ impl<'a> RingStage<'a> {
                 y[j] += steps[j];
                 // A slope from before may be too steep.
                 let far = if look == 0 { now } else { steps[j] };
-                farthest = farthest.max((far / stage.accuracy[j]).abs());
+                settled &= far.abs() <= stage.accuracy[j];
             }
-            if farthest <= 1.0 {
+            if settled {
                 return Ok(lost);
             }
         }

@@ -183,13 +183,20 @@ impl RingSteps {
         let (mut from, mut end) = (v.t0(), Vec::new());
         for to in ends {
             wave.add(to, |x, values| {
-                if x == 0.0 && !end.is_empty() {
-                    // A piece begins where the one before ends.
-                    values.copy_from_slice(&end);
+                let (y, q) = values.split_at_mut(n);
+                // A piece begins where the one before ends.
+                let known = match x {
+                    0.0 if from == v.t0() => Some((v.y0(), v.q0())),
+                    0.0 => Some(end.split_at(n)),
+                    1.0 if to == v.t1() => Some((v.y1(), v.q1())),
+                    _ => None,
+                };
+                if let Some((states, quads)) = known {
+                    y.copy_from_slice(states);
+                    q.copy_from_slice(quads);
                     return;
                 }
                 let t = if x == 1.0 { to } else { from + x * (to - from) };
-                let (y, q) = values.split_at_mut(n);
                 v.interpolate(t, y);
                 v.interpolate_quad(t, q);
                 let mut rows = rows.iter();
