@@ -35,7 +35,7 @@ pub use span::MOST_STATES;
 use grid::{Grid, Rule};
 use guess::Guess;
 use joint::{Joint, Part};
-use repeat::Repeat;
+use repeat::{Repeat, Serves};
 use track::Track;
 
 /// What is integrated together.
@@ -296,7 +296,7 @@ impl Waveform {
         self.before[1].clone_from(&self.forces);
         half.wave.begin(0.0, half.part.width());
         let (wave, part, mut ends) = (&mut half.wave, &half.part, Vec::new());
-        half.grid.repeat.begin(rule.is_some());
+        half.grid.repeat.begin(if rule.is_some() { Serves::Rates } else { Serves::Nothing });
         if let Some(rings) = &mut self.staging.rings {
             rings.set_accuracy(pack, setting.options);
         }
@@ -355,7 +355,12 @@ impl Waveform {
             &beside.wave,
             None,
         );
-        half.grid.repeat.begin(rule.is_some());
+        half.grid.repeat.begin(match rule {
+            Some(_) => Serves::Rates,
+            // With oil on the liner cycles take a tenth fewer films, but the search is as many cycles longer.
+            None if system.pack.oil_pack.is_some() => Serves::Nothing,
+            None => Serves::Trend,
+        });
         system.repeat = Some(&mut half.grid.repeat);
         let mut joint = Joint::new(&beside.wave, [&beside.part, part], system.pack);
         let (first, retreats) = (self.cycles == 0 && !self.held, &mut self.retreats);
