@@ -110,7 +110,7 @@ fn slider(input: &Input, n: &NumberInput, resolved: &Value, first: bool) -> Slid
         path: input.path.clone(),
         label,
         of,
-        about: input.about.clone(),
+        about: input.about.told(),
         unit: n.unit.clone(),
         value: n.value,
         low,

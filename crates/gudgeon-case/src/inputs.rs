@@ -15,12 +15,44 @@ pub struct Input {
     /// Dotted path, as `--set` takes it.
     pub path: String,
     /// What it is.
-    pub about: String,
+    pub about: About,
     /// Line of the file that gives it, from 1; none for a default.
     pub line: Option<usize>,
     /// Its value.
     #[serde(flatten)]
     pub value: InputValue,
+}
+
+/// What an input is for, as its field in the schema says, or else its type.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct About(&'static str);
+
+impl About {
+    fn of(field: Part, schema: Part) -> Self {
+        let text = at(field, "description").or_else(|| at(schema, "description")).and_then(Value::as_str);
+        Self(text.unwrap_or_default())
+    }
+
+    /// All of it, as one line.
+    #[must_use]
+    pub fn told(self) -> String {
+        flat(self.0)
+    }
+
+    /// Its first sentence, without the full stop.
+    #[must_use]
+    pub fn brief(self) -> String {
+        let mut stops = self.0.match_indices('.').map(|(at, _)| at);
+        let end = stops.find(|at| self.0[at + 1..].starts_with(char::is_whitespace));
+        let first = &self.0[..end.unwrap_or(self.0.len())];
+        flat(first.trim_end().trim_end_matches('.'))
+    }
+}
+
+impl Serialize for About {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.told())
+    }
 }
 
 /// The value of an input.
@@ -78,9 +110,9 @@ impl Words {
 
     /// Each word, and what it means.
     pub fn told(&self) -> impl Iterator<Item = (String, String)> + '_ {
-        self.0
-            .iter()
-            .map(|(word, meaning)| ((*word).to_owned(), meaning.map_or_else(String::new, |s| about(s, s))))
+        self.0.iter().map(|(word, meaning)| {
+            ((*word).to_owned(), meaning.map_or_else(String::new, |s| About::of(s, s).told()))
+        })
     }
 }
 
@@ -129,7 +161,7 @@ impl Walk<'_> {
                     let words = Words(t.variants.iter().map(|(n, s)| (*n, Some(*s))).collect());
                     let value = ChoiceInput { value: word.clone(), kind: kind.into(), words };
                     let written = written.and_then(|w| w.child(t.tag));
-                    self.add(&join(path, t.tag), written, about(field, inner), InputValue::Choice(value));
+                    self.add(&join(path, t.tag), written, About::of(field, inner), InputValue::Choice(value));
                 }
                 let properties = table.and_then(|t| at(t, "properties")).and_then(Value::as_object);
                 for e in entries {
@@ -153,7 +185,7 @@ impl Walk<'_> {
                 (None, Some(words)) if words.len() > 1 => {
                     let words = Words(words.into_iter().map(|w| (w, None)).collect());
                     let value = ChoiceInput { value: word.clone(), kind: String::new(), words };
-                    self.add(path, written, about(field, inner), InputValue::Choice(value));
+                    self.add(path, written, About::of(field, inner), InputValue::Choice(value));
                 }
                 _ => {}
             },
@@ -161,13 +193,13 @@ impl Walk<'_> {
             Data::Bool(b) => {
                 let words = Words(["true", "false"].map(|w| (w, None)).to_vec());
                 let value = ChoiceInput { value: b.to_string(), kind: String::new(), words };
-                self.add(path, written, about(field, inner), InputValue::Choice(value));
+                self.add(path, written, About::of(field, inner), InputValue::Choice(value));
             }
             Data::Date => {}
         }
     }
 
-    fn add(&mut self, path: &str, written: Option<&Node>, about: String, value: InputValue) {
+    fn add(&mut self, path: &str, written: Option<&Node>, about: About, value: InputValue) {
         let span = written.and_then(|w| w.place.span.as_ref());
         let line = span.map(|s| self.lines.partition_point(|begin| *begin <= s.start));
         self.out.push(Input { path: path.to_owned(), about, line, value });
@@ -193,7 +225,7 @@ impl Walk<'_> {
             least: least.map(of_unit),
             most: most.map(of_unit),
         };
-        self.add(path, written, about(field, schema), InputValue::Number(number));
+        self.add(path, written, About::of(field, schema), InputValue::Number(number));
     }
 
     fn number(&mut self, (node, written): (&Node, Option<&Node>), field: Part, schema: Part, path: &str) {
@@ -222,7 +254,7 @@ impl Walk<'_> {
             least: limit("minimum").or_else(|| limit("exclusiveMinimum")),
             most: limit("maximum").or_else(|| limit("exclusiveMaximum")),
         };
-        self.add(path, written, about(field, schema), InputValue::Number(number));
+        self.add(path, written, About::of(field, schema), InputValue::Number(number));
     }
 
     /// The kind that a reference names: the definition of a kind's models has its name.
@@ -247,12 +279,6 @@ fn written_unit(written: &Node, units: &'static [Unit]) -> Option<&'static Unit>
         Data::Integer(_) | Data::Float(_) => units.first(),
         _ => None,
     }
-}
-
-/// What a value is for: what its field says, or its type.
-fn about(field: Part, schema: Part) -> String {
-    let text = at(field, "description").or_else(|| at(schema, "description")).and_then(Value::as_str);
-    flat(text.unwrap_or_default())
 }
 
 /// A text as one line, with single spaces between its words.

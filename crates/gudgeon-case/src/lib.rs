@@ -36,7 +36,7 @@ use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
 pub use cursor::{Help, KeyHelp};
-pub use inputs::{ChoiceInput, Input, InputValue, NumberInput, Words};
+pub use inputs::{About, ChoiceInput, Input, InputValue, NumberInput, Words};
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::{Level, Refinement};

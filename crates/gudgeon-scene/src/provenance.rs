@@ -55,12 +55,8 @@ fn inputs(case: &dyn Scene, resolved: &serde_json::Value) -> Vec<InputUse> {
     let given = |i: &Input| {
         i.line.is_some() || sets.contains(&i.path) || changed.iter().any(|c| is_within(short(&i.path), c))
     };
-    let shown = |i: Input| InputUse {
-        given: given(&i),
-        value: text(&i.value),
-        about: sentence(&i.about).to_owned(),
-        path: i.path,
-    };
+    let shown =
+        |i: Input| InputUse { given: given(&i), value: text(&i.value), about: i.about.brief(), path: i.path };
     case.inputs_of(resolved).into_iter().map(shown).collect()
 }
 
@@ -76,12 +72,6 @@ fn text(value: &InputValue) -> String {
         InputValue::Choice(c) => c.value.clone(),
         _ => String::new(),
     }
-}
-
-/// The first sentence of a text.
-fn sentence(text: &str) -> &str {
-    let end = text.find(". ").map_or(text.len(), |at| at + 1);
-    text[..end].trim_end_matches('.')
 }
 
 fn set_use(set: &UsedSet) -> SetUse {

@@ -51,7 +51,11 @@ fn inputs_have_the_unit_of_the_text_and_its_line() {
     assert!(find("rings.0.gap").line.is_some() && find("machine.cylinders").line.is_none());
     let InputValue::Choice(gas) = &find("models.gas.model").value else { panic!("a choice") };
     assert!(gas.words.told().any(|(w, _)| w == "channel"), "{gas:?}");
-    assert_eq!(find("machine.speed").about, "Crankshaft speed. More text.");
+    let about = find("machine.speed").about;
+    assert_eq!(
+        (about.told().as_str(), about.brief().as_str()),
+        ("Crankshaft speed. More text.", "Crankshaft speed")
+    );
 }
 
 #[test]
