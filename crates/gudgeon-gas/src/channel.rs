@@ -48,6 +48,7 @@ fn cube(reynolds: f64) -> f64 {
     x * x * x
 }
 
+/// `(1 + cube)^(-1/7)`.
 #[inline]
 fn share_at(cube: f64) -> f64 {
     if cube < SLOW { slow_share(cube) } else { elementary::exp(elementary::ln(1.0 + cube) * (-1.0 / 7.0)) }

@@ -51,7 +51,7 @@ fn the_bound_that_spares_the_search_holds() {
             assert!(top <= 1.0 + rule.overshoot, "{n} {bits}: {top}");
             highest = highest.max(top - 1.0);
         }
-        // No wider than it need be.
+        // No wider than it need be: what was rounded up, to two digits.
         assert!(rule.overshoot - highest < 5e-3, "{n}: {highest}");
     }
 }
@@ -178,7 +178,7 @@ fn three_samples_are_exact_for_the_integral_of_a_cubic_and_through_a_parabola() 
     // A quotient of differences of a tenth; the top is flat there.
     assert!((x - 0.375).abs() < 1e-14 && (top - 1.5625).abs() < 1e-14, "{x} {top}");
     assert_eq!(SIMPSON.maximum(&v, 1.6), None);
-    // Up to the top and down from there; upside down the way up is what falls.
+    // Up to the top and down from there; upside down the way up is what falls. Rounding as above.
     assert!((SIMPSON.fall(&v) - 1.5625).abs() < 1e-14);
     let down: Vec<f64> = v.iter().map(|v| -v).collect();
     assert!((SIMPSON.fall(&down) - 0.5625).abs() < 1e-14);

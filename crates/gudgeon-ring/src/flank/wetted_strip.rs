@@ -146,6 +146,7 @@ impl FlankSpec for WettedStrip {
 struct Strip {
     mu: f64,
     width: f64,
+    /// One over the width.
     per_width: f64,
     roughness: f64,
     separation: f64,

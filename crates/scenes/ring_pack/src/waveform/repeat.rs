@@ -27,7 +27,7 @@ impl Rates {
         }
     }
 
-    /// Rate `j` of `n` at an instant, as a line between the stages `next - 1` and `next`, and its place between them.
+    /// Each of the `n` rates at an instant, on the straight line between the stages `next - 1` and `next`; none before the first stage and behind the last.
     fn line(&self, next: usize, t: f64, n: usize) -> Option<impl Fn(usize) -> f64> {
         let before = next.checked_sub(1)?;
         let (from, to) = (*self.t.get(before)?, *self.t.get(next)?);
