@@ -101,6 +101,8 @@ pub struct Bend {
     pub settles: (usize, usize),
     /// Part of its accuracy by which a cycle usually differs from cycle to cycle.
     pub noise: f64,
+    /// Least factor by which a residual understates an error, where nothing was known of the map: few cycles do not show all that is slow.
+    pub slow: f64,
 }
 
 /// The roughest cycle.

@@ -19,8 +19,9 @@ use super::land_cycle::LandCycle;
 use super::law::Law;
 use super::liner::Liner;
 
-/// Part of each side of a face that is wetted at the start.
-const FIRST_REACH: f64 = 0.1;
+/// Part of each side of a face that is wetted at the start: of ring 1, which stands at its upper dead centre then and has all but run dry there, and of the others. What ring 1 has too much
+/// of takes tens of cycles to go, and what it lacks comes more slowly still.
+const FIRST_REACH: (f64, f64) = (0.03, 0.1);
 /// Film of the unit of the volume states \[m\].
 const UNIT_FILM: f64 = 1e-6;
 /// Unit of the film on the liner, where it is handed out \[m\].
@@ -295,8 +296,9 @@ impl OilTransport for Carried {
         for k in 0..self.faces.len() {
             let f = &self.faces[k];
             let (h, unit) = (films[f.ring], self.unit(k));
+            let reach = if f.ring == 0 { FIRST_REACH.0 } else { FIRST_REACH.1 };
             for side in 0..SIDES {
-                y[SIDES * k + side] = f.held(h, FIRST_REACH * f.span(side), side) / unit;
+                y[SIDES * k + side] = f.held(h, reach * f.span(side), side) / unit;
             }
         }
         self.liner.start(self.law.initial);

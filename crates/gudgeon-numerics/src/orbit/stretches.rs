@@ -72,6 +72,8 @@ struct Stretch {
     skipped: usize,
     /// Largest factor by which a residual understated an error before the step.
     held: f64,
+    /// Least such factor.
+    least: f64,
     /// Longest step: less where the machine could not follow.
     reach: f64,
     /// Smallest residual.
@@ -102,6 +104,7 @@ impl Stretch {
             at: None,
             skipped: if known.is_empty() { bend.settles.0 } else { bend.settles.1 },
             held: 1.0,
+            least: if known.is_empty() { bend.slow } else { 1.0 },
             points: Points::with(known),
             reach: bend.reach,
             best: f64::INFINITY,
@@ -405,8 +408,8 @@ impl Search {
             let estimate = self.judge_stretch(&mut state, options, (last, map.noise()));
             let residual = self.report.residual;
             last = residual;
-            let settled =
-                (passed > 0.0 || state.near > 0 && stepped) && residual <= SETTLED * options.accuracy;
+            // Before the first step two cycles must agree that nothing is slow.
+            let settled = (passed > 0.0 || stepped) && residual <= SETTLED * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
                 state.settle(map, &mut g);
@@ -476,7 +479,7 @@ impl Search {
         let ratio = if slow > 1.0 && residual <= SETTLED * own_noise { 0.0 } else { ratio };
         let seen = slow.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / super::MAX_GAIN)));
         // Fast modes that a step stirred up hide a slow one: what was slow before it is taken to be slow still.
-        let gain = seen.max(state.held);
+        let gain = seen.max(state.held).max(state.least);
         if state.ready() {
             state.held = seen;
             // What was known before is of a like map, whose search has asked.

@@ -541,7 +541,7 @@ const LIKE: f64 = 0.5;
 /// edge is full at a corner. Volumes grow a hundredfold on the way, fivefold at most in a step. A cycle
 /// differs from the next by as much as it is accurate: where secants are trusted nearer than that, the search of 36 packs takes an eighth more cycles.
 const OIL_BEND: Bend =
-    Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (3, 1), noise: 1.0 };
+    Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (2, 1), noise: 1.0, slow: 3.0 };
 /// Cycles of films alone that are not looked at: they are cheap, and shall find the slowest modes. With as few as of halves friction of fluttering packs is 2.5e-3 off at most, with these 1.1e-3.
 const FILMS_SETTLE: (usize, usize) = (4, 2);
 
