@@ -6,6 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 const N: usize = 8;
 
+/// How maps of stores are searched here.
+const BEND: Bend =
+    Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0, slow: 1.0 };
+
 /// `y -> x + M (y - x)` with the given multipliers along a skew basis, and an error of every cycle of the size of its accuracy.
 struct Linear {
     fixed: DVector<f64>,
@@ -303,7 +307,7 @@ impl CycleMap for Bent {
         self.1
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
+        Some(Bend { noise: 0.1, ..BEND })
     }
 }
 
@@ -382,7 +386,7 @@ impl CycleMap for Logistic {
 
 #[test]
 fn a_cycle_that_repeats_every_second_time_is_reported() {
-    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 });
+    let bent = Some(Bend { noise: 0.1, ..BEND });
     for (accelerate, bend) in [(true, None), (true, bent), (false, None)] {
         for start in [0.3, 0.55, 0.68, 0.9] {
             let r: f64 = 3.2;
@@ -557,8 +561,7 @@ impl CycleMap for Vain {
 
 #[test]
 fn a_map_that_gives_up_is_asked_no_more() {
-    let bend = Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 };
-    for (accelerate, bend) in [(true, None), (true, Some(bend)), (false, None)] {
+    for (accelerate, bend) in [(true, None), (true, Some(BEND)), (false, None)] {
         let mut map = Vain { left: 4, bend };
         let report = periodic_orbit(&mut map, &mut [0.0], &options(1e-4, accelerate)).unwrap();
         assert!(!report.converged && report.cycles == 4, "{accelerate} {bend:?} {report:?}");
@@ -861,7 +864,7 @@ impl CycleMap for Taught {
 fn a_like_map_shortens_a_search_in_stretches_by_what_it_taught_and_more_where_it_leads_on() {
     // Multipliers of 0.94, 0.875 and 0.82.
     let b = [0.35, 0.5, 0.6];
-    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 });
+    let bend = Some(BEND);
     let options =
         OrbitOptions { tolerance: 5e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
     let (mut led, mut taught, mut alone, mut leads) = (0, 0, 0, 0);
@@ -903,7 +906,7 @@ fn a_like_map_shortens_a_search_in_stretches_by_what_it_taught_and_more_where_it
 fn a_start_that_hardly_moves_ends_the_search_of_a_slow_map() {
     // Multipliers of 0.99, 0.875 and 0.82.
     let b = [0.14, 0.5, 0.6];
-    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 });
+    let bend = Some(BEND);
     let options =
         OrbitOptions { tolerance: 8e-3, accuracy: 3e-4, max_cycles: 200, refinements: 0, accelerate: true };
     let slow = Change { start: vec![1.0, 0.0, 0.0], change: vec![-0.0098, 0.0098, 0.0], noise: 1e-4 };
@@ -927,6 +930,31 @@ fn a_start_that_hardly_moves_ends_the_search_of_a_slow_map() {
     assert!(cycles <= 20 * 10, "{cycles} cycles");
 }
 
+/// Few cycles of a search that begins near the orbit do not show what is slow: how much of it must be thought possible says the map.
+#[test]
+fn what_few_cycles_do_not_show_is_thought_to_be_slow() {
+    // Multipliers of 0.82, 0.28 and 0.16.
+    let b = [0.6, 1.2, 1.3];
+    let options =
+        OrbitOptions { tolerance: 5e-3, accuracy: 1e-3, max_cycles: 200, refinements: 0, accelerate: true };
+    let search = |slow: f64| {
+        let (mut missed, mut cycles) = (0, 0);
+        for seed in 1..=60 {
+            let mut map = Tanks::new(&b, seed, Some(Bend { settles: (2, 1), slow, ..BEND }));
+            let mut start = 7 * seed;
+            let mut y: Vec<f64> = b.iter().map(|b| (1.0 / b).powi(2) + 0.02 * noise(&mut start)).collect();
+            let report = periodic_orbit(&mut map, &mut y, &options).unwrap();
+            missed += usize::from(map.error(&y) > options.tolerance);
+            cycles += report.cycles;
+        }
+        (missed, cycles)
+    };
+    let ((unseen, cycles), (missed, all)) = (search(1.0), search(3.0));
+    // Of 60 searches 7 and none end farther away than asked, after 338 and 401 cycles, when this was written; by chance other noise could make 7 a 3.
+    assert!(unseen >= 3 && missed == 0, "{unseen} {missed}");
+    assert!(4 * all < 5 * cycles, "{all} {cycles}");
+}
+
 /// A store that fills at a constant rate to a corner and then ever slower (multiplier 0.9966), blurred by what beside it goes to and fro at a corner: oil before the edge of a ring.
 struct Creep(u64);
 impl Creep {
@@ -937,7 +965,7 @@ impl Creep {
 }
 impl CycleMap for Creep {
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
+        Some(Bend { noise: 0.1, ..BEND })
     }
     fn dim(&self) -> usize {
         3
@@ -987,7 +1015,7 @@ fn a_store_that_creeps_is_filled_where_its_rate_ends() {
 
 #[test]
 fn a_bent_map_is_followed_by_fresh_secants_and_cheap_cycles() {
-    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.3 });
+    let bent = Some(Bend { noise: 0.3, ..BEND });
     // Multipliers of 0.9, 0.8, 0.6 and 0.28.
     let b = [0.45, 0.63, 0.9, 1.2];
     let (mut all, mut plain) = (0, 0);
@@ -1050,7 +1078,7 @@ impl CycleMap for Stores {
         }
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
+        Some(Bend { noise: 0.1, ..BEND })
     }
 }
 
@@ -1169,7 +1197,7 @@ impl CycleMap for Store {
         }
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
+        Some(Bend { noise: 0.1, ..BEND })
     }
 }
 

@@ -408,8 +408,9 @@ impl Search {
             let estimate = self.judge_stretch(&mut state, options, (last, map.noise()));
             let residual = self.report.residual;
             last = residual;
-            // Before the first step two cycles must agree that nothing is slow.
-            let settled = (passed > 0.0 || stepped) && residual <= SETTLED * options.accuracy;
+            // Two cycles must agree that nothing is slow, but after a step where that is allowed for.
+            let once = stepped && (state.near > 0 || state.least > 1.0);
+            let settled = (passed > 0.0 || once) && residual <= SETTLED * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
                 state.settle(map, &mut g);
