@@ -21,7 +21,7 @@ use super::liner::Liner;
 
 /// Part of each side of a face that is wetted at the start: of ring 1, which stands at its upper dead centre then and has all but run dry there, and of the others. What ring 1 has too much
 /// of takes tens of cycles to go, and what it lacks comes more slowly still.
-const FIRST_REACH: (f64, f64) = (0.03, 0.1);
+const FIRST_REACH: (f64, f64) = (0.02, 0.1);
 /// Film of the unit of the volume states \[m\].
 const UNIT_FILM: f64 = 1e-6;
 /// Unit of the film on the liner, where it is handed out \[m\].

@@ -49,10 +49,18 @@ pub struct LinerFilm {
     /// Axial spacing of the film on the liner, at most; half the shortest face or gap between faces if that is less.
     #[schemars(extend("x-refine" = { "group": "liner grid", "factor": 0.5 }))]
     pub spacing: PosLength,
-    /// Film on the liner at the start of the first cycle. No result depends on it, but the number of cycles until they repeat does.
-    pub initial: Length<NonNegative>,
+    /// Film on the liner at the start of the first cycle; 0.4 times the roughness when absent, and 0.04 um at least. No result depends on it, but the number of cycles until they
+    /// repeat does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial: Option<Length<NonNegative>>,
     /// Density of the oil, which inertia acts on and which turns volumes into masses.
     pub density: PosDensity,
+}
+
+/// About what rings in contact leave on the liner \[m\], by what the valleys of a roughness \[m\] hold. A search that begins with a third of it ends before the oil ring has filled, 1 to 2 %
+/// off in friction; one with twice as much takes a third more cycles.
+fn left_in_contact(roughness: f64) -> f64 {
+    (0.4 * roughness).max(0.04e-6)
 }
 
 impl Default for LinerFilm {
@@ -63,7 +71,7 @@ impl Default for LinerFilm {
             roughness: quantity(0.4e-6),
             wave: quantity(50e-6),
             spacing: quantity(0.25e-3),
-            initial: quantity(0.1e-6),
+            initial: None,
             density: quantity(850.0),
         }
     }
@@ -100,7 +108,7 @@ impl OilTransportSpec for LinerFilm {
             mean_gap: GaussianGap::new(),
             wave: self.wave.si(),
             spacing: self.spacing.si(),
-            initial: self.initial.si(),
+            initial: self.initial.map_or_else(|| left_in_contact(self.roughness.si()), |film| film.si()),
             density: self.density.si(),
         };
         Ok(Some(Box::new(Carried::new(law, ctx))))

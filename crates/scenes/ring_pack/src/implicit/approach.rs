@@ -18,9 +18,10 @@ const ROUGHER: f64 = 10.0;
 const ROUGH: [(f64, f64); 2] = [(1e-3, 1e-2), (1e-3, 3e-3)];
 /// Tolerance of a search without oil below which it is not the way to the orbit that takes its cycles, but the noise at its end: halves shorten it no more.
 const FINE: f64 = 5e-5;
-/// How near they come to their periodic state, over what a search that ends there would be asked, and beyond which distance they do not end: at 3e-2 they would before the slow mode
-/// of oil shows.
-const NEARBY: (f64, f64) = (3.0, 5e-3);
+/// How near they come to their periodic state, over what a search that ends there would be asked, without oil on the liner and with it, and beyond which distance they do not end: at
+/// 3e-2 they would before the slow mode of oil shows, and three times as far they do where an engine is cold.
+const NEARBY: [f64; 2] = [3.0, 1.0];
+const FARTHEST: f64 = 5e-3;
 /// Most steps of one of their halves in a cycle, without oil on the liner and with it: where a ring leaves the liner or opens and shuts a thousand times they are no way to
 /// anywhere, and cost more than the pack as a whole. Of 40 packs of three to six rings usual ones take up to 460 and 900.
 const ROUGH_STEPS: [u64; 2] = [600, 4000];
@@ -65,7 +66,8 @@ fn rougher(s: &Implicit, pack: &Pack, most: u32) -> (Implicit, OrbitOptions) {
     let tolerance = quantity((ROUGHER * s.tolerance.si()).clamp(finest, roughest));
     let halves = Implicit { tolerance, integrator: RingIntegrator::Waveform, max_cycles: most, ..s.clone() };
     let mut options = orbit_options(&halves, pack);
-    options.tolerance = (NEARBY.0 * options.tolerance).min(NEARBY.1.max(options.tolerance));
+    let near = NEARBY[usize::from(pack.oil_pack.is_some())];
+    options.tolerance = (near * options.tolerance).min(FARTHEST.max(options.tolerance));
     (halves, options)
 }
 
