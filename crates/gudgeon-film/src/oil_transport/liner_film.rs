@@ -57,8 +57,8 @@ pub struct LinerFilm {
     pub density: PosDensity,
 }
 
-/// About what rings in contact leave on the liner \[m\], by what the valleys of a roughness \[m\] hold. A search that begins with a third of it ends before the oil ring has filled, 1 to 2 %
-/// off in friction; one with twice as much takes a third more cycles.
+/// About what rings in contact leave on the liner \[m\], by what the valleys of a roughness \[m\] hold. A search that begins with a fifth to a third of it ends before the oil ring has
+/// filled, 1 to 2 % off in friction.
 fn left_in_contact(roughness: f64) -> f64 {
     (0.4 * roughness).max(0.04e-6)
 }
