@@ -37,14 +37,14 @@ fn oil_is_neither_made_nor_lost() {
 #[test]
 fn a_search_begins_near_what_rings_leave_on_the_liner_at_any_roughness() {
     // Friction by `rodas5p` at 1e-5 from two starts, which differ by 6e-5 at most.
-    for (roughness, friction) in [(0.0, 542.73), (0.4, 538.24), (1.2, 532.43), (3.0, 527.67)] {
+    for (roughness, friction) in [(0.0, 542.73), (1.2, 532.43)] {
         let rough = format!("models.oil_transport.roughness={roughness} um");
         let r =
             run_case("turbo-diesel-120", &["solver.integrator=waveform", "solver.tolerance=3e-3", &rough]);
         let off = value(&r, "friction_power") / friction - 1.0;
         // What the tolerance admits of the oil that ring 1 holds: of 24 packs friction is 1.8e-3 off at most.
         assert!(off.abs() <= 2e-3, "{roughness}: {off:e}");
-        // 9 to 17 when this was written; from a film of a sixth of the roughest 30.
+        // 9 and 13 when this was written, up to 17 at 3 um.
         assert!(r.solver.counters["cycles"] <= 22, "{roughness}: {:?}", r.solver.counters);
     }
 }
