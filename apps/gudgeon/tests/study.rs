@@ -59,10 +59,11 @@ points = 60
 
 /// The parts of a study, by name.
 fn parts(study: &str) -> BTreeMap<String, Vec<u8>> {
-    let read =
-        |e: fs::DirEntry| (e.file_name().to_string_lossy().into_owned(), fs::read(e.path()).expect("read"));
-    let all = fs::read_dir(Path::new(study).join("parts")).expect("parts");
-    all.filter_map(Result::ok).map(read).filter(|(name, _)| !name.starts_with('.')).collect()
+    let all = fs::read_dir(Path::new(study).join("parts")).expect("parts").filter_map(Result::ok);
+    let named = all.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path()));
+    // Parts that are being written are hidden, and gone the next moment.
+    let done = named.filter(|(name, _)| !name.starts_with('.'));
+    done.map(|(name, path)| (name, fs::read(path).expect("read"))).collect()
 }
 
 /// A study of `more`, made in a folder of its own.
