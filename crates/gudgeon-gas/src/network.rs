@@ -337,6 +337,13 @@ impl<L: PassageLaw> Network<L> {
         self.flow[link]
     }
 
+    /// Flows \[kg/s\] through all links at the last update.
+    #[inline]
+    #[must_use]
+    pub fn flows(&self) -> &[f64] {
+        &self.flow
+    }
+
     /// Partial derivatives \[kg/(s Pa)\] of the flow through a link by the pressures of its first and of its second node, at the last
     /// [`update_partials`](Self::update_partials).
     #[inline]

@@ -46,21 +46,19 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         let (masses, energies) = d_state.split_at_mut(self.net.volumes());
         self.net.rates(masses);
         out.power = self.energy.as_ref().map_or(0.0, |energy| self.write_energies(energy, energies));
-        for (i, links) in self.links.iter().enumerate() {
-            let flow = |link: Option<usize>| link.map_or(0.0, |l| self.net.flow(l));
-            let direct = self.net.flow(links.gap) + flow(links.face);
+        let flows = self.net.flows();
+        let flow = |link: Option<usize>| link.map_or(0.0, |l| flows[l]);
+        for ((links, into), out_of) in self.links.iter().zip(&mut out.flow_in).zip(&mut out.flow_out) {
+            let direct = flows[links.gap] + flow(links.face);
             let [first, last] = links.flanks();
-            out.flow_in[i] = direct + flow(first);
-            out.flow_out[i] = direct + flow(last);
+            (*into, *out_of) = (direct + flow(first), direct + flow(last));
         }
         if let Some(blow_by) = out.flow_out.last_mut() {
             for (link, sign) in &self.drained {
-                *blow_by += sign * self.net.flow(*link);
+                *blow_by += sign * flows[*link];
             }
         }
-        for (link, flow) in out.passages.iter_mut().enumerate() {
-            *flow = self.net.flow(link);
-        }
+        out.passages.iter_mut().zip(flows).for_each(|(passage, flow)| *passage = *flow);
     }
 }
 

@@ -352,10 +352,9 @@ impl Pack {
     }
 
     pub(super) fn share_pressures(&mut self) {
-        for i in 0..self.n_rings() {
-            let r = &mut self.at.rings[i];
-            (r.p_above, r.p_below, r.p_back) =
-                (self.at.gas.p_land[i], self.at.gas.p_land[i + 1], self.at.gas.p_back[i]);
+        let Instant { gas, rings, .. } = &mut self.at;
+        for ((r, lands), behind) in rings.iter_mut().zip(gas.p_land.windows(2)).zip(&gas.p_back) {
+            (r.p_above, r.p_below, r.p_back) = (lands[0], lands[1], *behind);
             r.p_cav = self.laws.cavitation_datum.pressure(self.p_crankcase, r.p_above, r.p_below);
         }
     }

@@ -83,7 +83,7 @@ struct Half {
 
 impl Half {
     fn new(side: Side, pack: &Pack) -> Self {
-        Self::with(Part { states: side.states(&pack.layout), quads: Vec::new() }, pack, &[])
+        Self::with(Part::new(side.states(&pack.layout), Vec::new()), pack, &[])
     }
 
     fn with(part: Part, pack: &Pack, balance: &[LinearInvariant]) -> Self {
@@ -180,7 +180,7 @@ impl Waveform {
     /// Cycles tell the quadratures of the pack, whose balances are `balance`, from now on.
     pub fn tell_quadratures(&mut self, pack: &Pack, balance: &[LinearInvariant]) {
         for (half, side) in [(&mut self.grooves, Side::Grooves), (&mut self.films, Side::Films)] {
-            let part = Part { states: side.states(&pack.layout), quads: side.quads(&pack.layout) };
+            let part = Part::new(side.states(&pack.layout), side.quads(&pack.layout));
             let told = Half::with(part, pack, balance);
             let Half { wave, grid, .. } = std::mem::replace(half, told);
             // What has no states is not integrated: its quadratures stand still beside the other half, in a wave that has room for them.
@@ -217,7 +217,7 @@ impl Waveform {
         {
             Some(seen) => {
                 let part = &self.grooves.part;
-                part.states.iter().zip(&seen.end).for_each(|(&k, v)| y[k] = *v);
+                part.put(&seen.end, y);
                 self.seen = Some(seen);
             }
             None => self.grooves(pack, y, q, setting, follower.is_some())?,
@@ -265,7 +265,7 @@ impl Waveform {
                 v.interpolate(t0 + x * (t1 - t0), between);
                 &**between
             };
-            values.iter_mut().zip(&part.states).for_each(|(value, &k)| *value = all[k]);
+            part.take(all, values);
         });
     }
 
@@ -302,7 +302,7 @@ impl Waveform {
         let (wave, part, mut ends) = (&mut half.wave, &half.part, Vec::new());
         half.grid.repeat.begin(if rule.is_some() { Serves::Rates } else { Serves::Nothing });
         if let Some(rings) = &mut self.staging.rings {
-            rings.set_accuracy(pack, setting.options);
+            rings.set_accuracy(setting.options);
         }
         let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants).beside(
             &self.films.part,
@@ -487,7 +487,7 @@ fn integrate(
     let span = (0.0, system.pack.period());
     let st = &mut *setting.stats;
     method.integrate(system, span, setting.breakpoints, &mut states, &mut quads, &options, st, observe)?;
-    part.states.iter().zip(&states).for_each(|(&k, v)| y[k] = *v);
+    part.put(&states, y);
     part.quads.iter().zip(&quads).for_each(|(&k, v)| q[k] = *v);
     Ok(())
 }
@@ -529,7 +529,7 @@ impl<'a> OneSide<'a> {
         let n = pack.layout.n;
         let instants = if side == Side::Films { sdirk::PLACES.len() } else { 1 };
         let rings = staging.rings.iter().filter(|_| side == Side::Grooves);
-        let judged = rings.flat_map(|r| r.judged(pack)).filter_map(|k| part.row(k, n)).collect();
+        let judged = rings.flat_map(RingSteps::judged).filter_map(|k| part.row(k, n)).collect();
         Self {
             side,
             staging,
@@ -559,10 +559,10 @@ impl<'a> OneSide<'a> {
 
     /// All states for those of this side.
     fn fill(&mut self, t: f64, y: &[f64]) {
-        self.part.states.iter().zip(y).for_each(|(&k, v)| self.y[k] = *v);
+        self.part.put(y, &mut self.y);
         if let Some((part, wave)) = self.other {
             wave.eval(t, 0, &mut self.beside);
-            part.states.iter().zip(&self.beside).for_each(|(&k, v)| self.y[k] = *v);
+            part.put(&self.beside, &mut self.y);
         }
         if let Some(forces) = self.forces {
             forces.eval(t, 0, &mut self.axial);
@@ -601,10 +601,8 @@ impl<'a> OneSide<'a> {
 
     /// Books the oil of an accepted step of the films.
     fn book(&mut self, v: &dyn StepView) {
-        let ends = [(&mut self.base, v.y0()), (&mut self.y, v.y1())];
-        for (all, own) in ends {
-            self.part.states.iter().zip(own).for_each(|(&k, v)| all[k] = *v);
-        }
+        self.part.put(v.y0(), &mut self.base);
+        self.part.put(v.y1(), &mut self.y);
         self.pack.book_oil((v.t0(), &self.base), (v.t1(), &self.y));
     }
 
@@ -659,12 +657,11 @@ impl OdeSystem for OneSide<'_> {
             repeat.apply(t, stage, y);
         }
         self.fill(t, y);
-        for ((&k, base), accuracy) in self.part.states.iter().zip(stage.base).zip(stage.accuracy) {
-            (self.base[k], self.accuracy[k]) = (*base, *accuracy);
-        }
+        self.part.put(stage.base, &mut self.base);
+        self.part.put(stage.accuracy, &mut self.accuracy);
         let whole = Stage { base: &self.base, accuracy: &self.accuracy, ..*stage };
         self.pack.stage_of(self.side, (t, p), &whole, &mut self.y, &self.axial, self.staging)?;
-        self.part.states.iter().zip(&mut *y).for_each(|(&k, v)| *v = self.y[k]);
+        self.part.take(&self.y, y);
         self.guess.learn(t, &part, &y[guessed]);
         if let Some(repeat) = &mut self.repeat {
             repeat.learn(t, stage, y);
@@ -688,8 +685,8 @@ impl OdeSystem for OneSide<'_> {
             self.judged.iter().for_each(|&row| atol[row] = f64::INFINITY);
             return;
         }
-        self.part.states.iter().zip(&*atol).for_each(|(&k, a)| self.base[k] = *a);
+        self.part.put(atol, &mut self.base);
         self.pack.ease_films(&mut self.base);
-        self.part.states.iter().zip(&mut *atol).for_each(|(&k, a)| *a = self.base[k]);
+        self.part.take(&self.base, atol);
     }
 }

@@ -45,10 +45,10 @@ impl Guess {
             return;
         }
         let on = |a: &[f64], b: &[f64], j: usize| b[j] + x * (b[j] - a[j]);
-        for (j, y) in y.iter().enumerate() {
+        self.guesses.extend(y.iter().zip(stage.base).enumerate().map(|(j, (y, base))| {
             let other = drive.map_or(*y, |d| d * on(&a.shares, &b.shares, j));
-            self.guesses.push([stage.base[j] + stage.step * on(&a.rates, &b.rates, j), other]);
-        }
+            [base + stage.step * on(&a.rates, &b.rates, j), other]
+        }));
         self.nearer.resize(y.len(), 0);
         for ((y, guesses), nearer) in y.iter_mut().zip(&self.guesses).zip(&self.nearer) {
             if drive.is_none() || guesses[*nearer] * *y > 0.0 {

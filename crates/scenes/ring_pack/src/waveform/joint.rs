@@ -12,9 +12,36 @@ use super::track::Track;
 pub struct Part {
     pub states: Vec<usize>,
     pub quads: Vec<usize>,
+    /// The states in pieces that follow one another on both sides: first row here, first place in the pack, length.
+    pieces: Vec<[usize; 3]>,
 }
 
 impl Part {
+    pub fn new(states: Vec<usize>, quads: Vec<usize>) -> Self {
+        let mut pieces: Vec<[usize; 3]> = Vec::new();
+        for (row, &place) in states.iter().enumerate() {
+            match pieces.last_mut() {
+                Some([_, first, length]) if *first + *length == place => *length += 1,
+                _ => pieces.push([row, place, 1]),
+            }
+        }
+        Self { states, quads, pieces }
+    }
+
+    /// Puts the states of this side, or something of each, where the pack has them.
+    pub fn put(&self, own: &[f64], all: &mut [f64]) {
+        for &[row, place, length] in &self.pieces {
+            all[place..][..length].copy_from_slice(&own[row..][..length]);
+        }
+    }
+
+    /// Takes the states of this side, or something of each, out of those of the pack.
+    pub fn take(&self, all: &[f64], own: &mut [f64]) {
+        for &[row, place, length] in &self.pieces {
+            own[row..][..length].copy_from_slice(&all[place..][..length]);
+        }
+    }
+
     /// Number of states and quadratures.
     pub const fn width(&self) -> usize {
         self.states.len() + self.quads.len()
@@ -94,8 +121,14 @@ impl<'a> Joint<'a> {
     /// States of the pack at `t`.
     fn states(&self, step: &dyn StepView, t: f64, y: &mut [f64]) {
         let [beside, stepping] = self.parts;
-        self.put(y, &beside.states, |own| self.beside.eval(t, 0, own));
-        self.put(y, &stepping.states, |own| match t {
+        let mut own = self.own.borrow_mut();
+        let mut of = |part: &Part, look: &dyn Fn(&mut [f64])| {
+            own.resize(part.states.len(), 0.0);
+            look(&mut own);
+            part.put(&own, y);
+        };
+        of(beside, &|own| self.beside.eval(t, 0, own));
+        of(stepping, &|own| match t {
             t if t >= step.t1() => own.copy_from_slice(step.y1()),
             t => step.interpolate(t, own),
         });

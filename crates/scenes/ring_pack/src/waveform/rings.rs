@@ -108,35 +108,33 @@ pub struct RingSteps {
 impl RingSteps {
     /// For the rings of a pack.
     pub fn new(pack: &Pack) -> Self {
-        let both = (0..pack.n_rings()).map(|i| (motion(pack, i).len(), pack.layout.flank[i].len()));
-        let rings: Vec<_> = both.map(|(motion, flank)| Steps::new(motion, flank)).collect();
+        let own = |i: usize| Steps::new(motion(pack, i), pack.layout.flank[i].clone());
+        let rings: Vec<_> = (0..pack.n_rings()).map(own).collect();
         let responses = vec![Response::default(); rings.len()];
         Self { rings, responses, ..Self::default() }
     }
 
     /// Sets accuracy and first step, for all states of the pack.
-    pub fn set_accuracy(&mut self, pack: &Pack, options: &Options) {
+    pub fn set_accuracy(&mut self, options: &Options) {
         (self.first, self.tolerance) = (options.h_init, options.rtol);
-        for (i, ring) in self.rings.iter_mut().enumerate() {
-            for (j, k) in states(pack, i).enumerate() {
-                ring.atol[j] = options.atol[k];
-                ring.relative[j] = if options.absolute[k] { 0.0 } else { options.rtol };
+        for ring in &mut self.rings {
+            let both = ring.atol.iter_mut().zip(&mut ring.relative);
+            for ((atol, relative), &k) in both.zip(&ring.places[..ring.n]) {
+                *atol = options.atol[k];
+                *relative = if options.absolute[k] { 0.0 } else { options.rtol };
             }
         }
     }
 
     /// The states whose error is judged here.
-    pub fn judged(&self, pack: &Pack) -> Vec<usize> {
-        (0..self.rings.len()).flat_map(|i| states(pack, i)).collect()
+    pub fn judged(&self) -> Vec<usize> {
+        self.rings.iter().flat_map(|ring| &ring.places[..ring.n]).copied().collect()
     }
 
     /// Begins at the instant of the pack, whose rates are known.
     pub fn begin(&mut self, pack: &Pack) {
         for (i, ring) in self.rings.iter_mut().enumerate() {
-            let (mut y, mut rates) = ([0.0; MOST_STATES], [0.0; MOST_STATES]);
-            for (j, k) in states(pack, i).enumerate() {
-                (y[j], rates[j]) = (pack.state[k], pack.dy[k]);
-            }
+            let (y, rates) = (ring.of(&pack.state), ring.of(&pack.dy));
             if ring.is_known() && y == ring.spans[1].end.y {
                 // Its stages know the rates better than an evaluation.
                 ring.start = ring.spans[1].end;
@@ -219,11 +217,6 @@ fn motion(pack: &Pack, i: usize) -> std::ops::Range<usize> {
     if pack.plan.axial { pack.layout.motion[i].clone() } else { 0..0 }
 }
 
-/// The states of ring `i` in its groove: motion, and oil on the flanks.
-fn states(pack: &Pack, i: usize) -> impl Iterator<Item = usize> + Clone {
-    motion(pack, i).chain(pack.layout.flank[i].clone())
-}
-
 impl Pack {
     /// Gas, with the rings in their grooves following at steps of their own.
     pub(in super::super) fn grooves_by_steps(
@@ -255,7 +248,7 @@ impl Pack {
                 looks += 1;
                 self.set_gas(y)?;
                 if moving {
-                    self.responses(p, &rings.responses, y)?;
+                    self.responses(p, rings, y)?;
                 } else if standing {
                     self.gas_standing(p)?;
                 } else {
@@ -293,20 +286,21 @@ impl Pack {
     }
 
     /// Puts the rings where they respond to, and has the gas flow.
-    fn responses(&mut self, p: f64, responses: &[Response], y: &mut [f64]) -> Result<(), EvalError> {
+    fn responses(&mut self, p: f64, w: &RingSteps, y: &mut [f64]) -> Result<(), EvalError> {
         self.gas_pressures(p)?;
-        responses.iter().enumerate().for_each(|(i, respond)| self.respond(i, respond, y));
+        let both = w.rings.iter().zip(&w.responses).enumerate();
+        both.for_each(|(i, (steps, respond))| self.respond(i, steps, respond, y));
         self.gas(Some(p))
     }
 
     /// Puts ring `i` where its response to the gas leads.
-    fn respond(&mut self, i: usize, respond: &Response, y: &mut [f64]) {
-        if motion(self, i).is_empty() || !respond.is_known() {
+    fn respond(&mut self, i: usize, steps: &Steps, respond: &Response, y: &mut [f64]) {
+        if steps.motion == 0 || !respond.is_known() {
             return;
         }
         self.external_forces(i);
         let force = self.at.rings[i].axial.gas;
-        states(self, i).enumerate().for_each(|(j, k)| y[k] = respond.at(j, force));
+        steps.put(y, &std::array::from_fn(|j| respond.at(j, force)));
         self.put(i, y);
     }
 
@@ -337,8 +331,8 @@ impl Pack {
 
     /// Puts ring `i` where it comes to at the rates that it had.
     fn go_on(&mut self, i: usize, stage: &Stage<'_>, y: &mut [f64], w: &mut RingSteps) {
-        let ahead = w.rings[i].ahead(stage.number, self.at.theta);
-        states(self, i).zip(&ahead).for_each(|(k, v)| y[k] = *v);
+        let steps = &w.rings[i];
+        steps.put(y, &steps.ahead(stage.number, self.at.theta));
         self.put(i, y);
         (w.responses[i].known, w.responses[i].slope) = (false, [0.0; MOST_STATES]);
     }
@@ -384,7 +378,7 @@ impl Pack {
         let near =
             change <= NEARLY * w.tolerance * (a.gas + a.inertia + a.gravity + a.film + a.expander).abs();
         if near {
-            states(self, i).zip(&w.rings[i].spans[number - 1].end.y).for_each(|(k, v)| y[k] = *v);
+            w.rings[i].put(y, &w.rings[i].spans[number - 1].end.y);
         }
         near
     }
@@ -399,11 +393,11 @@ impl Pack {
         w: &mut RingSteps,
         chooses: bool,
     ) -> Result<f64, EvalError> {
-        let moves = !motion(self, i).is_empty();
+        let steps = &mut w.rings[i];
+        let moves = steps.motion > 0;
         if moves {
             self.external_forces(i);
         }
-        let steps = &mut w.rings[i];
         if steps.n == 0 {
             return Ok(0.0);
         }
@@ -412,7 +406,7 @@ impl Pack {
         steps.integrate(&mut self.rings[i], &to)?;
         steps.tell_lost(stage);
         let span = &steps.spans[stage.number - 1];
-        states(self, i).zip(&span.end.y).for_each(|(k, v)| y[k] = *v);
+        steps.put(y, &span.end.y);
         self.at.places[i] = span.place;
         let r = &mut self.at.rings[i];
         if moves {

@@ -3,6 +3,8 @@
 //! The method is that of the pack ([`sdirk`]). A ring takes the step of the gas where that is accurate enough for it, the stages of the gas being its own. Elsewhere
 //! it takes steps of its own from each instant of the gas to the next, under what acts on it as a parabola between them.
 
+use std::ops::Range;
+
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::RingResponse;
@@ -79,9 +81,10 @@ fn within(step: &Step, (y0, k0): (&States, &States), t: f64) -> States {
 /// One ring over a step of the gas.
 #[derive(Debug, Clone, Default)]
 pub struct Steps {
-    /// States of the motion, and all.
+    /// States of the motion, and all, and their places in the pack.
     pub motion: usize,
     pub n: usize,
+    pub places: [usize; MOST_STATES],
     pub start: Node,
     /// To the first stage, and from there to the second.
     pub spans: [Span; 2],
@@ -113,9 +116,24 @@ pub struct Target<'a> {
 }
 
 impl Steps {
-    pub fn new(motion: usize, flank: usize) -> Self {
-        let atol = [1.0; MOST_STATES];
-        Self { motion, n: motion + flank, atol, slope: [1.0; MOST_STATES], ..Self::default() }
+    /// For the places of its states in the pack.
+    pub fn new(motion: Range<usize>, flank: Range<usize>) -> Self {
+        let mut places = [0; MOST_STATES];
+        places.iter_mut().zip(motion.clone().chain(flank.clone())).for_each(|(place, k)| *place = k);
+        let (n, ones) = (motion.len() + flank.len(), [1.0; MOST_STATES]);
+        Self { motion: motion.len(), n, places, atol: ones, slope: ones, ..Self::default() }
+    }
+
+    /// Of all states of the pack, or something of each, those of the ring.
+    pub fn of(&self, all: &[f64]) -> States {
+        let mut own = [0.0; MOST_STATES];
+        own.iter_mut().zip(&self.places[..self.n]).for_each(|(own, &k)| *own = all[k]);
+        own
+    }
+
+    /// Puts the states of the ring among all of the pack.
+    pub fn put(&self, all: &mut [f64], own: &States) {
+        self.places[..self.n].iter().zip(own).for_each(|(&k, own)| all[k] = *own);
     }
 
     /// Forgets what is kept from stage to stage.
