@@ -156,7 +156,7 @@ impl<L: PassageLaw> Network<L> {
             let node = &mut self.nodes[node];
             let per_mass = node.gas.rt() / volume;
             let p = mass * per_mass;
-            if p >= f64::MIN_POSITIVE && p.is_finite() {
+            if (f64::MIN_POSITIVE..=f64::MAX).contains(&p) {
                 node.per_mass = per_mass;
                 node.gas.set_pressure(p);
                 node.factor = self.law.node_factor(&node.gas);
@@ -192,7 +192,7 @@ impl<L: PassageLaw> Network<L> {
     /// Recoverable, when it is not positive.
     #[inline]
     pub fn set_pressure(&mut self, model: &'static str, node: usize, p: f64) -> Result<(), EvalError> {
-        if p >= f64::MIN_POSITIVE && p.is_finite() {
+        if (f64::MIN_POSITIVE..=f64::MAX).contains(&p) {
             let node = &mut self.nodes[node];
             node.gas.set_pressure(p);
             node.factor = self.law.node_factor(&node.gas);

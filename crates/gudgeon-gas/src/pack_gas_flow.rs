@@ -14,7 +14,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
     /// Everything the flows follow from.
     fn set(&mut self, inp: &GasIn<'_>, state: &[f64]) -> Result<(), EvalError> {
         self.set_pressures(inp, state)?;
-        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+        for (i, place) in inp.rings[..self.links.len()].iter().enumerate() {
             self.set_passages(i, place)?;
         }
         Ok(())
@@ -162,7 +162,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
 
     fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
         self.set_pressures(inp, state)?;
-        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+        for (i, place) in inp.rings[..self.links.len()].iter().enumerate() {
             if let RingLinks { through: true, upper: Some(upper), .. } = self.links[i] {
                 self.set_passages(i, place)?;
                 self.net.update_flow(upper);

@@ -385,24 +385,26 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         let n = self.links.len();
         self.net.set_pressure(self.name, self.lands[0], inp.p_cylinder)?;
         self.net.set_pressure(self.name, self.lands[n], inp.p_crankcase)?;
-        for i in 0..n {
+        for (i, place) in inp.rings[..n].iter().enumerate() {
             if !self.is_boundary(i) {
                 let node = self.lands[i];
                 let width = self.spaces.land_width(i);
                 self.set_space(node, state, self.spaces.pack.lands[i].volume, width)?;
             }
-            self.set_back(i, &inp.rings[i], state)?;
+            self.set_back(i, place, state)?;
         }
         Ok(())
     }
 
     /// Pressure of the space behind ring `i`, if it has one.
+    #[inline(always)]
     pub(crate) fn set_back(&mut self, i: usize, place: &RingPlace, state: &[f64]) -> Result<(), EvalError> {
         let Some(node) = self.links[i].back else { return Ok(()) };
         self.set_space(node, state, self.spaces.volume_behind(i, place), self.spaces.width_behind(i, place))
     }
 
     /// Pressure of a space of a size \[m³\] and the distance `width` \[m\] of its walls.
+    #[inline(always)]
     fn set_space(&mut self, node: usize, state: &[f64], volume: f64, width: f64) -> Result<(), EvalError> {
         let mass = state[node];
         match &mut self.energy {

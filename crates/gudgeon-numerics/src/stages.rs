@@ -20,6 +20,29 @@ const CHORDS: usize = 6;
 /// Part of a change of the residual that the matrix must keep in an update.
 const LEAST_TURN: f64 = 0.1;
 
+/// Where a solution is foreseen: what may remain of the accuracy, the longest step over the accuracy after which it is trusted, and in how many solutions in turn a contraction
+/// serves. A gas between rings that move then takes 0.84 looks for one; where contractions served on and on, or after any step, rings and gas drift apart and
+/// steps become ten times as many.
+const REMAINS: f64 = 0.3;
+const TRUSTED: f64 = 10.0;
+const SERVES: usize = 2;
+
+/// How a solution ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// By a step within the accuracy: the residual was evaluated that near.
+    Seen,
+    /// By a longer step, after which what remains is foreseen to be within the accuracy.
+    Foreseen,
+}
+
+/// How much shorter a step was than the one before, and in how many more solutions that serves.
+#[derive(Debug, Clone, Copy, Default)]
+struct Contraction {
+    ratio: f64,
+    serves: usize,
+}
+
 /// What became of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Taken {
@@ -47,6 +70,9 @@ pub struct StageNewton {
     known: bool,
     fresh: bool,
     given: bool,
+    /// Whether solutions may be foreseen, and the contraction that was seen last.
+    foresees: bool,
+    contraction: Contraction,
     /// Step whose matrix is inverted; NaN where the Jacobian is a newer one.
     inverted: f64,
     pivots: Vec<usize>,
@@ -76,6 +102,8 @@ impl StageNewton {
             known: false,
             fresh: false,
             given: false,
+            foresees: false,
+            contraction: Contraction::default(),
             inverted: f64::NAN,
             pivots: vec![0; n],
             inverse: m(),
@@ -92,9 +120,16 @@ impl StageNewton {
         }
     }
 
-    /// Forgets the Jacobian.
+    /// Forgets the Jacobian, and how solutions contracted.
     pub fn forget(&mut self) {
         self.known = false;
+        self.contraction = Contraction::default();
+    }
+
+    /// Whether a solution may end a step earlier where the contraction of those before foresees that the next step would be within the accuracy
+    /// ([`Ended::Foreseen`]). At first it may not.
+    pub fn foresee(&mut self, may: bool) {
+        self.foresees = may;
     }
 
     /// Sets the Jacobian of the rates at the guess of the next stage, for a row and a column.
@@ -105,7 +140,7 @@ impl StageNewton {
     }
 
     /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step is smaller than `accuracy` in every unknown. That step is still
-    /// taken; the residual was evaluated before it last.
+    /// taken; the residual was evaluated before it last. How it ended tells how near that was.
     ///
     /// # Errors
     /// Recoverable where no solution is found nearby; those of the residual at the guess.
@@ -115,7 +150,7 @@ impl StageNewton {
         s: f64,
         accuracy: &[f64],
         residual: &mut Residual<'_>,
-    ) -> Result<(), EvalError> {
+    ) -> Result<Ended, EvalError> {
         residual(x, &mut self.r)?;
         self.fresh = false;
         if self.known {
@@ -132,9 +167,14 @@ impl StageNewton {
             }
             times(&self.inverse, &self.r, &mut self.step);
             let size = size(&self.step, accuracy);
-            if size <= 1.0 && !self.fresh && (taken || self.is_seen(accuracy)) {
+            let ended = if size <= 1.0 && !self.fresh && (taken || self.is_seen(accuracy)) {
+                Some(Ended::Seen)
+            } else {
+                self.is_foreseen(size).then_some(Ended::Foreseen)
+            };
+            if let Some(ended) = ended {
                 x.iter_mut().zip(&self.step).for_each(|(x, d)| *x -= d);
-                return Ok(());
+                return Ok(ended);
             }
             if before.is_finite() && (size > SLOW * before || size <= 1.0) && !self.fresh {
                 (self.known, before) = (false, f64::INFINITY);
@@ -157,6 +197,15 @@ impl StageNewton {
         all.all(|((r, last), a)| r.abs() <= a.max(0.5 * last.abs()))
     }
 
+    /// Whether the step that follows one of a size over the accuracy is foreseen to be within it.
+    fn is_foreseen(&mut self, size: f64) -> bool {
+        let Contraction { ratio, serves } = &mut self.contraction;
+        let known = self.foresees && !self.fresh && *serves > 0;
+        let foreseen = known && (1.0..TRUSTED).contains(&size) && *ratio * size <= REMAINS;
+        *serves -= usize::from(foreseen);
+        foreseen
+    }
+
     /// Takes a step, or as much of it as leads anywhere.
     fn take(
         &mut self,
@@ -168,7 +217,7 @@ impl StageNewton {
         residual: &mut Residual<'_>,
     ) -> Result<Taken, EvalError> {
         loop {
-            let mut seen = false;
+            let (mut seen, mut ratio) = (false, f64::NAN);
             for ((t, x), d) in self.trial.iter_mut().zip(&*x).zip(&self.step) {
                 *t = x - *part * d;
             }
@@ -176,12 +225,15 @@ impl StageNewton {
                 Ok(()) => {
                     seen = true;
                     times(&self.inverse, &self.moved, &mut self.next);
-                    size_now <= 1.0 || size(&self.next, accuracy) <= (1.0 - GAIN * *part) * size_now
+                    let next = size(&self.next, accuracy);
+                    ratio = next / size_now;
+                    size_now <= 1.0 || next <= (1.0 - GAIN * *part) * size_now
                 }
                 Err(e) if e.is_recoverable() => false,
                 Err(e) => return Err(e),
             };
             if better {
+                self.contraction = Contraction { ratio, serves: if *part == 1.0 { SERVES } else { 0 } };
                 self.update(*part, s, accuracy);
                 x.copy_from_slice(&self.trial);
                 self.last.copy_from_slice(&self.r);

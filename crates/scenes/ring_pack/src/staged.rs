@@ -15,7 +15,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::{RingForces, RingTrials};
 use gudgeon_core::states::Stage;
-use gudgeon_numerics::stages::StageNewton;
+use gudgeon_numerics::stages::{Ended, StageNewton};
 
 use super::pack::Pack;
 use super::ring::Ring;
@@ -83,23 +83,28 @@ impl Together {
         self.newton.set_jacobian(by);
     }
 
+    /// Whether a solution may be foreseen; what its last look saw is then not that near.
+    pub(super) fn foresee(&mut self, may: bool) {
+        self.newton.foresee(may);
+    }
+
     /// Solves a stage for these unknowns.
     pub(super) fn solve(
         &mut self,
         stage: &Stage<'_>,
         y: &mut [f64],
         missing: &mut Missing<'_>,
-    ) -> Result<(), EvalError> {
+    ) -> Result<Ended, EvalError> {
         let (states, tight) = (&self.states, self.tight);
         for ((x, a), &k) in self.x.iter_mut().zip(&mut self.accuracy).zip(states) {
             (*x, *a) = (y[k], tight * stage.accuracy[k]);
         }
-        self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
+        let ended = self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
             states.iter().zip(x).for_each(|(&k, x)| y[k] = *x);
             missing(y, states, r)
         })?;
         states.iter().zip(&self.x).for_each(|(&k, x)| y[k] = *x);
-        Ok(())
+        Ok(ended)
     }
 }
 
@@ -357,7 +362,7 @@ impl Pack {
         }
         both.before = before;
         match found {
-            Ok(()) => Ok(true),
+            Ok(_) => Ok(true),
             Err(e) if e.is_recoverable() => Ok(false),
             Err(e) => Err(e),
         }

@@ -304,6 +304,8 @@ impl Waveform {
         if let Some(rings) = &mut self.staging.rings {
             rings.set_accuracy(setting.options);
         }
+        // Quadratures need the flows of the gas that was found.
+        self.staging.gas.foresee(part.quads.is_empty());
         let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants).beside(
             &self.films.part,
             &self.films.wave,

@@ -10,6 +10,7 @@ use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::GasPartials;
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::ode::{Options, StepView};
+use gudgeon_numerics::stages::Ended;
 
 use super::super::pack::Pack;
 use super::super::staged::{Staging, Together};
@@ -244,7 +245,7 @@ impl Pack {
         for pass in 0..=PASSES {
             let moving = rings.responses.iter().any(Response::is_known);
             let (mut standing, mut looks) = (false, 0);
-            gas.solve(stage, y, &mut |y, _, r| {
+            let ended = gas.solve(stage, y, &mut |y, _, r| {
                 looks += 1;
                 self.set_gas(y)?;
                 if moving {
@@ -260,6 +261,10 @@ impl Pack {
             })?;
             if pass == 0 {
                 rings.looks = looks;
+            }
+            if ended == Ended::Foreseen {
+                self.set_gas(y)?;
+                self.gas_pressures(p)?;
             }
             let mut settled = true;
             for i in 0..self.n_rings() {
