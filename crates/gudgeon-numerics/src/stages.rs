@@ -21,8 +21,8 @@ const CHORDS: usize = 6;
 const LEAST_TURN: f64 = 0.1;
 
 /// Where a solution is foreseen: what may remain of the accuracy, the longest step over the accuracy after which it is trusted, and in how many solutions in turn a contraction
-/// serves. A gas between rings that move then takes 0.84 looks for one; where contractions served on and on, or after any step, rings and gas drift apart and
-/// steps become ten times as many.
+/// serves. The gas of 800 packs takes 0.88 looks for one; where contractions served on and on, or after any step, rings and gas drifted apart and
+/// steps became up to eight times as many.
 const REMAINS: f64 = 0.3;
 const TRUSTED: f64 = 10.0;
 const SERVES: usize = 2;

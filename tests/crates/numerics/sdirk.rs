@@ -5,7 +5,7 @@ use gudgeon_numerics::ode::{
     Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage, Stats,
 };
 use gudgeon_numerics::sdirk::{self, Sdirk};
-use gudgeon_numerics::stages::StageNewton;
+use gudgeon_numerics::stages::{Ended, StageNewton};
 
 /// Error and dense output for one component alone are those of a step.
 #[test]
@@ -237,6 +237,45 @@ fn stages_with_a_corner_are_solved_and_hopeless_ones_refused() {
     };
     let refused = StageNewton::new(1).solve(&mut [0.0], 1.0, &[1e-9], &mut none);
     assert!(refused.is_err_and(|e| e.is_recoverable()));
+}
+
+/// Where solutions may be foreseen, two in turn end a look earlier, as near as is asked, and the next one is looked at again.
+#[test]
+fn solutions_are_foreseen_by_the_contraction_of_those_before() {
+    // x' = sin x + x/10 about a point that moves on: chords of a Jacobian that is kept contract a hundredfold or so.
+    let (s, accuracy) = (0.3, [1e-2]);
+    let mut ends = |foresees: bool| -> Vec<(Ended, usize)> {
+        let mut newton = StageNewton::new(1);
+        newton.foresee(foresees);
+        let solve = |k: usize| {
+            let (base, mut x, mut looks) = (0.2 + 0.01 * k as f64, [0.25 + 0.01 * k as f64], 0);
+            let missing = |x: f64| x - base - s * (x.sin() + 0.1 * x);
+            let ended = newton.solve(&mut x, s, &accuracy, &mut |x, r| {
+                looks += 1;
+                r[0] = missing(x[0]);
+                Ok(())
+            });
+            // The residual falls with the solution by 1 - 0.4 at least.
+            let off = missing(x[0]).abs() / 0.6;
+            assert!(off <= accuracy[0], "solution {k} is {off:e} off");
+            (ended.expect("a solution"), looks)
+        };
+        (0..7).map(solve).collect()
+    };
+    let (seen, foreseen) = (ends(false), ends(true));
+    assert!(seen.iter().all(|(ended, _)| *ended == Ended::Seen), "{seen:?}");
+    let of = |all: &[(Ended, usize)], k: usize| all[k].1;
+    assert!(
+        foreseen[1..].windows(3).all(|w| w.iter().filter(|(e, _)| *e == Ended::Foreseen).count() == 2),
+        "{foreseen:?}"
+    );
+    for (k, (ended, _)) in foreseen.iter().enumerate() {
+        assert_eq!(
+            of(&foreseen, k) + usize::from(*ended == Ended::Foreseen),
+            of(&seen, k),
+            "{seen:?} {foreseen:?}"
+        );
+    }
 }
 
 /// A small space beside a wide passage: its gas goes with the root of a pressure difference, and Newton's method steps over the root and back. What such a step
