@@ -244,7 +244,7 @@ fn stages_with_a_corner_are_solved_and_hopeless_ones_refused() {
 fn solutions_are_foreseen_by_the_contraction_of_those_before() {
     // x' = sin x + x/10 about a point that moves on: chords of a Jacobian that is kept contract a hundredfold or so.
     let (s, accuracy) = (0.3, [1e-2]);
-    let mut ends = |foresees: bool| -> Vec<(Ended, usize)> {
+    let ends = |foresees: bool| -> Vec<(Ended, usize)> {
         let mut newton = StageNewton::new(1);
         newton.foresee(foresees);
         let solve = |k: usize| {
