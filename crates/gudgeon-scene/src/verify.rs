@@ -119,20 +119,22 @@ fn floors(results: &Results) -> IndexMap<String, f64> {
     floors
 }
 
-/// What may be left behind the last of a series, and whether it shrinks.
+/// What may be left behind the last of a series, and whether it shrinks: the rest of a geometric series, and at most the last difference where that takes back the one before, for the limit then
+/// lies between the last two values.
 fn rest(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
     let last = |k: usize| {
         let n = series.len();
-        (n > k + 1).then(|| change(series[n - 2 - k], series[n - 1 - k], unit).abs())
+        (n > k + 1).then(|| change(series[n - 2 - k], series[n - 1 - k], unit))
     };
-    let Some(d) = last(0) else { return (0.0, true) };
-    let scale = series.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let Some(change) = last(0) else { return (0.0, true) };
+    let (d, scale) = (change.abs(), series.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
     if d <= (ROUNDING * scale).max(floor) {
         return (d, true);
     }
-    let ratio = last(1).filter(|before| *before > 0.0).map_or(ASSUMED, |before| d / before);
-    let q = ratio.min(SLOWEST);
-    (d * q / (1.0 - q), ratio <= SLOWEST)
+    let ratio = last(1).filter(|before| *before != 0.0).map_or(ASSUMED, |before| change / before);
+    let q = ratio.abs().min(SLOWEST);
+    let most = if ratio < 0.0 { 1.0 } else { f64::INFINITY };
+    (d * (q / (1.0 - q)).min(most), ratio.abs() <= SLOWEST)
 }
 
 /// Uncertainty of the first of a series that is refined, and whether the series settles.
@@ -159,6 +161,20 @@ mod tests {
             let (u, _) = uncertainty(&series[..2], "N", 0.0);
             assert!(q > ASSUMED || u >= 0.1 - 1e-12, "{q} {u}");
         }
+    }
+
+    #[test]
+    fn the_limit_of_a_series_that_goes_to_and_fro_lies_between_its_last_values() {
+        // It shrinks by a fifth a time, about a limit of 1, from which it begins 0.1 away.
+        let series = [1.1, 0.92, 1.064];
+        let (u, settles) = uncertainty(&series, "N", 0.0);
+        assert!(settles && (u - (0.036 + 0.144)).abs() < 1e-12, "{u}");
+        // A fast one is the sum that it was: a tenth of a change.
+        let (u, settles) = uncertainty(&[1.1, 0.99, 1.001], "N", 0.0);
+        assert!(settles && (u - (0.099 + 0.011 * (0.1 / 0.9))).abs() < 1e-12, "{u}");
+        // Noise does not settle, and is told by its size, not nine times that.
+        let (u, settles) = uncertainty(&[1.0, 1.2, 1.0, 1.2], "N", 0.0);
+        assert!(!settles && (u - 0.4).abs() < 1e-12, "{u}");
     }
 
     #[test]
