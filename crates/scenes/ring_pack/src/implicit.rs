@@ -545,8 +545,8 @@ const OIL_BEND: Bend =
     Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (2, 1), noise: 1.0, slow: 3.0 };
 /// Cycles of films alone that are not looked at: they are cheap, and shall find the slowest modes. With as few as of halves friction of fluttering packs is 2.5e-3 off at most, with these 1.1e-3.
 const FILMS_SETTLE: (usize, usize) = (4, 2);
-/// Least error over a residual of theirs where nothing is known. What lacks of the oil falls by a hundredth to a tenth a cycle: with 3, as of halves, three searches of 42 with rings that flutter ended after 28 to 34
-/// cycles in place of 50 to 90, and their friction was 7e-3 to 9e-3 off; no other one changes.
+/// Least error over a residual of theirs where nothing is known. What lacks of the oil falls by a hundredth to a tenth a cycle: with 3, as of halves, two searches of 41 with rings that flutter ended after 28 and 34
+/// cycles in place of 89 and 93, and their friction was 9e-3 and 7e-3 off; of the others three take up to six cycles more or less.
 const FILMS_SLOW: f64 = 20.0;
 
 impl CycleMap for Cycle<'_> {
