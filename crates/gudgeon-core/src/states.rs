@@ -199,6 +199,12 @@ pub trait Stateful {
         true
     }
 
+    /// Whether state `k` at the instant of the last [`Stateful::start`] follows the others within a fraction of a degree: what a cycle starts with then
+    /// does not count between cycles.
+    fn follows_at_once(&self, _k: usize) -> bool {
+        false
+    }
+
     /// Number of event functions.
     fn n_events(&self) -> usize {
         0

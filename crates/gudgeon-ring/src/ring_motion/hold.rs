@@ -77,6 +77,8 @@ const PUSHED: f64 = 4.0;
 /// Smallest rate \[1/rad\] at which the velocity of a ring must tend to that of the balance for the ring to be held: a time constant of
 /// half a degree.
 const MIN_RATE: f64 = 100.0;
+/// Distance of a velocity from that of the balance, over the latter, with which a ring is held where a cycle starts: it tends there within a fraction of a degree.
+const NEAR: f64 = 0.3;
 /// The derivative of a balance of which only the force is known is taken over this part of the velocity, or the smallest change \[m/s\].
 const DIFFERENCE: (f64, f64) = (1e-6, 1e-11);
 
@@ -304,8 +306,14 @@ impl Holding {
         b.force(self.release_speed(b)) / scale
     }
 
-    /// Positive when a free ring with the velocity `v` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled,
-    /// which it does within a fraction of a degree when a cycle `starts`.
+    /// How fast the velocity `v` of a free ring tends to that of the balance, over the least rate for which a ring is held, less one.
+    pub fn stiff(&self, b: &Balance<'_>, v: f64) -> f64 {
+        let rate = b.stiffness(b.away * v) / (self.mass * self.omega);
+        rate / MIN_RATE - 1.0
+    }
+
+    /// Positive when a free ring with the velocity `v` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled, to the accuracy or, where a
+    /// cycle `starts`, nearly.
     pub fn readiness(&self, b: &Balance<'_>, v: f64, starts: bool) -> f64 {
         if self.tolerance <= 0.0 {
             return -1.0;
@@ -314,18 +322,20 @@ impl Holding {
             let release = PUSHED / b.groove.flank.per_rebound;
             return (1.0 - b.velocity(release) / release).max(-1.0);
         }
-        let w = b.away * v;
-        let rate = b.stiffness(w) / (self.mass * self.omega);
-        let stiff = rate / MIN_RATE - 1.0;
+        let (w, stiff) = (b.away * v, self.stiff(b, v));
         if stiff.is_nan() || stiff <= 0.0 {
             return -1.0;
         }
         let release = self.release_speed(b);
         let balanced = b.velocity(release);
-        // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
-        let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
-        let settled = 1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed);
-        stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
+        let (off, admitted) = ((w - balanced).abs(), self.tolerance * self.unit_speed);
+        // A ring just let go is not held again at once; one that was held when the last cycle ended, at rest as its state says, still is.
+        let (kept, settled) = if starts {
+            (1.0 - balanced / release, 1.0 - off.min(w.abs()) / (admitted + NEAR * balanced.abs()))
+        } else {
+            (1.0 - 2.0 * balanced / release, 1.0 - off / admitted)
+        };
+        stiff.min(kept).min(settled).max(-1.0)
     }
 
     /// Lets the ring go, or has it held by the nearest flank at a place; its velocity then \[clearances per radian\].

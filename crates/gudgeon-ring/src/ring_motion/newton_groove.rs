@@ -128,6 +128,7 @@ impl RingMotionSpec for NewtonGroove {
             v: 0.0,
             gap: 0.0,
             stiffness: None,
+            settles: false,
         }))
     }
 }
@@ -159,6 +160,8 @@ struct Runtime {
     gap: f64,
     /// Derivative of the balance of the last stage by the velocity state beyond that of inertia and damping, over the square of the length of the stage: that by the height.
     stiffness: Option<f64>,
+    /// Whether the velocity with which the last cycle starts tends to that of the balance at once.
+    settles: bool,
 }
 
 /// Distance from the nearer flank \[m\].
@@ -314,6 +317,10 @@ impl Stateful for Runtime {
         k == 0 || self.holding.hold == Hold::Free
     }
 
+    fn follows_at_once(&self, k: usize) -> bool {
+        k == 1 && self.settles
+    }
+
     fn n_events(&self) -> usize {
         usize::from(self.holding.tolerance > 0.0)
     }
@@ -339,11 +346,14 @@ impl Stateful for Runtime {
 
     fn free(&mut self) {
         self.holding.free();
+        self.settles = false;
     }
 
     fn start(&mut self, y: &mut [f64]) {
-        let nearest = Hold::nearest(&self.forces.place);
-        if self.holding.readiness(&self.balance(&self.forces, nearest), self.v, true) > 0.0 {
+        let balance = self.balance(&self.forces, Hold::nearest(&self.forces.place));
+        let is_held = self.holding.readiness(&balance, self.v, true) > 0.0;
+        self.settles = is_held || self.holding.stiff(&balance, self.v) > 0.0;
+        if is_held {
             y[1] = self.holding.switch(&self.forces.place);
         }
     }

@@ -311,6 +311,8 @@ struct Cycle<'a> {
     method: Method,
     breakpoints: Vec<f64>,
     scale: Vec<f64>,
+    /// States that follow the others at once at the start of the last cycle or at its end.
+    followers: Vec<bool>,
     absolute: Vec<bool>,
     balance: Vec<LinearInvariant>,
     events: Vec<EventOf>,
@@ -523,6 +525,8 @@ impl Cycle<'_> {
     }
 }
 
+/// By how much less a state counts between cycles that follows the others at once.
+const FOLLOWS: f64 = 1e3;
 /// Steps after which a long cycle asks whether to go on: some tenths of a second.
 const ASKED_EVERY: u32 = 1000;
 
@@ -577,8 +581,11 @@ impl CycleMap for Cycle<'_> {
                 EvalError::recoverable("ring_pack", what)
             });
         }
-        // The velocity of a ring that could be held says nothing.
+        // The velocity of a ring that could be held says nothing, at the start of the cycle or at its end.
+        self.followers.fill(false);
+        self.pack.add_followers(&mut self.followers);
         self.pack.start_modes(self.pack.period(), &mut y1[..n])?;
+        self.pack.add_followers(&mut self.followers);
         self.end(y1);
         self.move_on(y1);
         Ok(1.0)
@@ -586,6 +593,9 @@ impl CycleMap for Cycle<'_> {
     fn scale(&self, y: &[f64], s: &mut [f64]) {
         for ((s, y), info) in s.iter_mut().zip(y).zip(&self.pack.layout.states) {
             *s = if info.cycle_relative { y.abs().max(info.cycle_scale) } else { info.cycle_scale };
+        }
+        for (s, _) in s.iter_mut().zip(&self.followers).filter(|(_, follows)| **follows) {
+            *s *= FOLLOWS;
         }
         let Some(oil) = &self.pack.oil_pack else { return };
         let Layout { n, oil: faces, .. } = &self.pack.layout;
@@ -710,6 +720,7 @@ impl<'a> Cycle<'a> {
             method: Method::new(s, pack),
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
+            followers: vec![false; pack.layout.n],
             absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
             balance,
             events: Vec::new(),

@@ -113,4 +113,13 @@ impl Pack {
         });
         Ok(())
     }
+
+    /// Which states follow the others at once after the last choice of modes is added to `out`.
+    pub(super) fn add_followers(&self, out: &mut [bool]) {
+        for b in self.blocks() {
+            for (k, own) in self.range(b).enumerate() {
+                out[own] |= self.block(b).follows_at_once(k);
+            }
+        }
+    }
 }
