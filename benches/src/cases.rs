@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gudgeon_core::result::RunResult;
 use gudgeon_models as _;
-use gudgeon_scene::{Checked, number, run, unwatched};
+use gudgeon_scene::{Checked, Threads, number, run, unwatched, with_threads};
 
 /// A shipped case with some values changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -181,10 +181,10 @@ pub fn given(resolved: &serde_json::Value, path: &str) -> Option<(f64, String)> 
     }
 }
 
-/// Runs a case without its sweeps.
+/// Runs a case without its sweeps, on one core: work and times are compared.
 ///
 /// # Errors
 /// What stopped it, as text.
 pub fn run_alone(checked: &Checked) -> Result<RunResult, String> {
-    run::run_alone(checked, &mut unwatched).map_err(|e| e.to_string())
+    with_threads(Threads::One, || run::run_alone(checked, &mut unwatched)).map_err(|e| e.to_string())
 }

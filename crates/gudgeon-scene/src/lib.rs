@@ -11,6 +11,7 @@ pub mod many;
 mod provenance;
 pub mod run;
 mod scene;
+mod second;
 mod solver_table;
 mod sweep;
 mod sweep_input;
@@ -33,6 +34,7 @@ pub use scene::{
     Scene, SceneCase, SceneInfo, SceneName, case_schemas, changed, help, load, read_case, scenes,
     verify_scenes,
 };
+pub use second::{SecondThread, Threads, receive, with_threads};
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
 pub use sweep_input::{Axis, Spacing, Sweep, number, values};
 pub use work_precision::{Asked, MethodSetting, OtherMethod, Reference, WorkPrecision};

@@ -13,6 +13,7 @@ use gudgeon_core::{Stopped, Stopwatch};
 use crate::error::{Progress, RunError};
 use crate::run::once;
 use crate::scene::Scene;
+use crate::second::{Threads, with_threads};
 
 /// What was kept of many runs.
 #[derive(Debug)]
@@ -48,13 +49,16 @@ pub fn all_threads() -> usize {
 /// Has `work` done for `0..count`, on `threads` threads (0: one a core). The calling thread hears of the progress, with the remaining time in words; when it
 /// says [`Stopped`], points under way are broken off and those that are done are kept.
 ///
-/// With one thread the points are done on the calling thread.
+/// With one thread the points are done on the calling thread, and no run uses a second one; a single point may, where more are allowed.
 pub fn run_many<T: Send>(
     count: usize,
     threads: usize,
     work: impl Fn(usize, Tell<'_>) -> T + Sync,
     progress: Tell<'_>,
 ) -> Many<T> {
+    if threads == 1 {
+        return with_threads(Threads::One, || one_by_one(count, work, progress));
+    }
     let threads = if threads == 0 { all_threads() } else { threads }.min(count);
     let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
     match pool {
@@ -99,7 +103,7 @@ fn side_by_side<T: Send>(
                     if stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let row = work(k, &mut heed);
+                    let row = with_threads(Threads::One, || work(k, &mut heed));
                     // A point that was broken off has nothing to tell; one that ended just before the stop is told all the same.
                     if stop.load(Ordering::Relaxed) || send.send((k, row)).is_err() {
                         return;

@@ -11,6 +11,7 @@ use crate::explanation::{ExplainedModel, Explanation};
 use crate::foresee;
 use crate::provenance::{self, provenance};
 use crate::scene::{Scene, SceneCase, load};
+use crate::second::{Busy, Threads, with_threads};
 use crate::verify::verify;
 use crate::{sweep, sweep_input};
 
@@ -148,7 +149,7 @@ pub fn run(
     run_on(c, 0, progress)
 }
 
-/// As [`run`], with the points of the sweeps on `threads` threads (0: one a core). Results are the same for any number.
+/// As [`run`], with the points of the sweeps on `threads` threads (0: one a core); with 1 the case keeps to this thread as well. Results are the same for any number.
 ///
 /// # Errors
 /// As [`run`].
@@ -158,7 +159,9 @@ pub fn run_on(
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
     let begin = Stopwatch::start();
-    finish(c, begin, with_sweeps(c.case.as_ref(), threads, progress)?)
+    let mut run = || with_sweeps(c.case.as_ref(), threads, progress);
+    let result = if threads == 1 { with_threads(Threads::One, run) } else { run() };
+    finish(c, begin, result?)
 }
 
 /// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
@@ -228,6 +231,7 @@ pub(crate) fn once(
     scene: &dyn Scene,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
+    let _busy = Busy::new();
     let foreseen = cfg!(debug_assertions).then(|| scene.result_names()).flatten();
     let result = scene.once(progress)?;
     if let Some(names) = foreseen {

@@ -7,7 +7,7 @@ mod plan;
 
 use gudgeon_core::result::{BenchTable, RunResult, Value};
 use gudgeon_scene::run::run_alone;
-use gudgeon_scene::{Checked, Progress, RunError, Stopped, foresee, unwatched};
+use gudgeon_scene::{Checked, Progress, RunError, Stopped, Threads, foresee, unwatched, with_threads};
 use indexmap::IndexMap;
 
 use plan::Plan;
@@ -57,10 +57,10 @@ pub fn bench(
     Ok(table)
 }
 
-/// One run with some settings changed.
+/// One run with some settings changed, on one core: times are compared.
 fn once(base: &Checked, set: &[String]) -> Result<RunResult, String> {
     let c = base.with(set).map_err(|r| r.to_string())?;
-    run_alone(&c, &mut unwatched).map_err(|e| e.to_string())
+    with_threads(Threads::One, || run_alone(&c, &mut unwatched)).map_err(|e| e.to_string())
 }
 
 /// The results that errors are told of: those asked for, or those of the scene that case and reference have.

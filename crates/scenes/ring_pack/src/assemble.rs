@@ -553,6 +553,7 @@ fn pack(
         hard_floor: false,
         state: vec![f64::NAN; states],
         complete: false,
+        twin: None,
         between: None,
         films: vec![0.0; n],
         viscosities: vec![0.0; n],

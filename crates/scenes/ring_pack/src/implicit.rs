@@ -40,6 +40,7 @@ mod search;
 
 pub use integrator::RingIntegrator;
 
+use approach::leads;
 use films_alone::FilmsAlone;
 use sampler::Sampler;
 use search::{oil_least, oil_noise, orbit_options, stopped};
@@ -97,6 +98,12 @@ impl RingPackSolverSpec for Implicit {
             errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
         }
         errors
+    }
+
+    /// Cycles in halves can be: gas with the motion in the grooves, and films.
+    fn works_at_once(&self, pack: &Pack) -> bool {
+        let halves = self.integrator == RingIntegrator::Waveform || leads(self, pack);
+        halves && pack.films() > 0
     }
 
     fn solve(
@@ -345,7 +352,7 @@ impl Cycle<'_> {
         let mut options = self.options(rtol);
         // The reference integrates every ring with its inertia.
         let accuracy = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
-        self.pack.each_block(|b, _| b.set_accuracy(accuracy));
+        self.pack.set_accuracy(accuracy);
         self.pack.events(&mut self.events);
         // Every cycle starts with the same step: the map must depend on nothing but the state.
         self.h = if matches!(self.method, Method::Waveform(_)) { FIRST_OF_HALVES } else { FIRST_STEP };

@@ -14,6 +14,15 @@ pub struct Counters {
     pub gas: u64,
 }
 
+impl Counters {
+    /// Adds other work.
+    pub const fn add(&mut self, o: Self) {
+        self.instants += o.instants;
+        self.film += o.film;
+        self.gas += o.gas;
+    }
+}
+
 /// One ring at an instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RingInstant {

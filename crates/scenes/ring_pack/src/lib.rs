@@ -53,6 +53,7 @@ pub mod solver;
 pub mod staged;
 mod stepping;
 pub mod substep_march;
+mod twin;
 mod used;
 mod vent;
 pub mod watch;

@@ -21,6 +21,7 @@ use super::limits::Limits;
 use super::liner::LinerShape;
 use super::plan::{Names, Plan};
 use super::ring::Ring;
+use super::twin::Twin;
 use super::waveform::Side;
 
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
@@ -111,6 +112,8 @@ pub struct Pack {
     pub state: Vec<f64>,
     /// Whether that is an evaluation of all forces, and not of one side.
     pub(super) complete: bool,
+    /// The same again, where a second thread works with it.
+    pub(super) twin: Option<Twin>,
     /// Films in the step that is looked at, where they are not to be solved again for that.
     pub(super) between: Option<FilmsBetween>,
     /// Film thicknesses of the rings, scratch.
@@ -158,9 +161,20 @@ impl Pack {
         f(&mut *self.film_temperature, self.layout.temperature.clone());
     }
 
+    /// Tells every model the relative error of a step.
+    pub(super) fn set_accuracy(&mut self, accuracy: f64) {
+        self.each_block(|b, _| b.set_accuracy(accuracy));
+        if let Some(twin) = &mut self.twin {
+            twin.pack.set_accuracy(accuracy);
+        }
+    }
+
     /// Has the flow through every passage of the gas carried as a quadrature from now on, or no longer: behind the others, so that these and the steps are
     /// what they are without it.
     pub fn follow_passages(&mut self, followed: bool) {
+        if let Some(twin) = &mut self.twin {
+            twin.pack.follow_passages(followed);
+        }
         let count = if followed { self.gas.passages().len() } else { 0 };
         self.layout.passages = count;
         self.at.gas.passages = vec![0.0; count];
@@ -675,6 +689,9 @@ impl Pack {
         for r in &mut self.at.rings {
             r.hdot = 0.0;
             r.axial = AxialForces::default();
+        }
+        if let Some(twin) = &mut self.twin {
+            twin.pack.initial(pressure, &mut vec![0.0; y.len()]);
         }
     }
 }

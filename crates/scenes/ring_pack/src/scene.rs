@@ -13,6 +13,7 @@ use super::pack::Pack;
 use super::rails::TakenApart;
 use super::solve::{elsewhere, solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
+use super::twin::Twin;
 use super::used::models_in_use;
 use super::{assemble, draw, film_strokes, geometry, legal, liner_wear, meter, plausible, state_names};
 use crate::case::RingPackCase;
@@ -68,7 +69,11 @@ impl SceneCase for RingPackCase {
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let bodies = bodies(case)?;
+        if case.solver.method.works_at_once(&pack) {
+            pack.twin = Twin::new(|| assemble::assemble(case, &loaded.source.files).ok());
+        }
         let solved = solve(case, &mut pack, progress)?;
+        pack.twin = None;
         let mut result = RunResult::default();
         (result.models, result.skipped) = models_in_use(&bodies, &pack.plan);
         result.results = solved.cycle.results(&pack, meter(case));

@@ -25,6 +25,11 @@ pub trait RingPackSolverSpec: Debug + DynClone + Send + Sync {
     /// Why it cannot solve this pack, with places in the case.
     fn refuses(&self, pack: &Pack) -> Vec<BuildError>;
 
+    /// Whether it can do two things at once, for the second of which it needs the pack a second time.
+    fn works_at_once(&self, _pack: &Pack) -> bool {
+        false
+    }
+
     /// Brings the pack to its periodic state, from all lands at `start` \[Pa\].
     ///
     /// # Errors

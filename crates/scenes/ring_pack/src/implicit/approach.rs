@@ -86,6 +86,12 @@ pub(super) fn in_halves<'a>(
     cycle
 }
 
+/// Whether a search in halves leads to that of `s`.
+pub(super) fn leads(s: &Implicit, pack: &Pack) -> bool {
+    let far = pack.oil_pack.is_some() || s.tolerance.si() >= FINE;
+    s.integrator != RingIntegrator::Waveform && pack.solves_stages() && s.max_cycles >= 2 && far
+}
+
 /// Where the search of `s` begins with all lands at `start` \[Pa\]: at the end of one in halves, if the pack can be halved and the halves agree.
 pub(super) fn approach(
     s: &Implicit,
@@ -95,11 +101,10 @@ pub(super) fn approach(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Start, RunError> {
     let mut begun = Start::cold(pack, start);
-    let (most, oil) = (s.max_cycles / 2, pack.oil_pack.is_some());
-    let far = oil || s.tolerance.si() >= FINE;
-    if s.integrator == RingIntegrator::Waveform || !pack.solves_stages() || most == 0 || !far {
+    if !leads(s, pack) {
         return Ok(begun);
     }
+    let (most, oil) = (s.max_cycles / 2, pack.oil_pack.is_some());
     let clock = Stopwatch::start();
     let (spec, options) = rougher(s, pack, most);
     let mut lead = |done: f64| progress(LEAD * done);

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use gudgeon_numerics::ode::{Flow, StepView};
 
 use super::super::pack::Pack;
-use super::track::Track;
+use super::growing::Growing;
 
 /// The states and the quadratures of a side, by their places in the pack, ascending.
 #[derive(Debug, Clone)]
@@ -62,7 +62,7 @@ const SLACK: f64 = 1e-9;
 
 /// A step of one side, or what lies of it in one step of the other.
 pub struct Joint<'a> {
-    beside: &'a Track,
+    beside: &'a Growing,
     parts: [&'a Part; 2],
     t: [f64; 2],
     /// States and quadratures of the pack at both ends.
@@ -80,7 +80,7 @@ struct Piece<'j, 'a> {
 
 impl<'a> Joint<'a> {
     /// For steps of one side beside what the other did; `parts` are that of the other and its own.
-    pub fn new(beside: &'a Track, parts: [&'a Part; 2], pack: &Pack) -> Self {
+    pub fn new(beside: &'a Growing, parts: [&'a Part; 2], pack: &Pack) -> Self {
         let y = || vec![0.0; pack.layout.n];
         let q = || vec![0.0; pack.layout.quads()];
         Self { beside, parts, t: [0.0; 2], y: [y(), y()], q: [q(), q()], own: RefCell::new(Vec::new()) }
@@ -88,8 +88,9 @@ impl<'a> Joint<'a> {
 
     /// Has each piece of the step looked at, until one stops.
     pub fn pieces(&mut self, step: &dyn StepView, mut look: impl FnMut(&dyn StepView) -> Flow) -> Flow {
-        let first = self.beside.ends().partition_point(|t| *t <= step.t0() + SLACK);
-        let inner = self.beside.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
+        let wave = self.beside.known();
+        let first = wave.ends().partition_point(|t| *t <= step.t0() + SLACK);
+        let inner = wave.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
         self.end(step, step.t0());
         for to in inner.chain([step.t1()]) {
             // A piece begins where the one before ends.
@@ -127,7 +128,7 @@ impl<'a> Joint<'a> {
             look(&mut own);
             part.put(&own, y);
         };
-        of(beside, &|own| self.beside.eval(t, 0, own));
+        of(beside, &|own| self.beside.known().eval(t, 0, own));
         of(stepping, &|own| match t {
             t if t >= step.t1() => own.copy_from_slice(step.y1()),
             t => step.interpolate(t, own),
@@ -138,7 +139,7 @@ impl<'a> Joint<'a> {
     fn quads(&self, step: &dyn StepView, t: f64, q: &mut [f64]) {
         let [beside, stepping] =
             self.parts.map(|part| &part.quads[..part.quads.partition_point(|k| *k < q.len())]);
-        self.put(q, beside, |own| self.beside.eval(t, self.parts[0].states.len(), own));
+        self.put(q, beside, |own| self.beside.known().eval(t, self.parts[0].states.len(), own));
         self.put(q, stepping, |own| match t {
             t if t >= step.t1() => own.copy_from_slice(&step.q1()[..own.len()]),
             t => step.interpolate_quad(t, own),

@@ -35,6 +35,13 @@ pub struct Change {
     pub size: f64,
 }
 
+/// Of no values.
+impl Default for Track {
+    fn default() -> Self {
+        Self::new(0, &THIRDS)
+    }
+}
+
 impl Track {
     pub fn new(width: usize, places: &'static [f64]) -> Self {
         debug_assert!(places.len() <= MOST_PLACES);
@@ -117,6 +124,12 @@ impl Track {
                 v.interpolate_quad(t, q);
             }
         });
+    }
+
+    /// Adds the steps of another, which begins where this one ends.
+    pub fn append(&mut self, more: &Self) {
+        self.values.extend_from_slice(&more.values);
+        self.ends.extend_from_slice(&more.ends[1..]);
     }
 
     /// Its steps, the first `states` values being states, the others quadratures.

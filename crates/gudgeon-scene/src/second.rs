@@ -1,0 +1,153 @@
+//! A second core for one run.
+//!
+//! A run that can do two things at once uses a core beside its own, where one is free: not where many runs share the machine, nor where its caller asked for one thread. Results are the
+//! same to the bit. What is done beside a run takes a millisecond or two, so both threads wait awake: one that sleeps is woken late, and on a virtual machine often on the core of the one that
+//! wakes it.
+
+use std::cell::Cell;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvError, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+
+use crate::many::all_threads;
+
+/// Threads of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Threads {
+    /// That of its caller alone.
+    One,
+    /// A second one, whatever else the machine does: for measurements and tests.
+    Two,
+}
+
+thread_local! {
+    /// Threads of the runs that begin on this one, where that is asked for.
+    static ASKED: Cell<Option<Threads>> = const { Cell::new(None) };
+}
+
+/// Has `work` done, with `threads` in every run that it begins on this thread.
+pub fn with_threads<T>(threads: Threads, work: impl FnOnce() -> T) -> T {
+    /// Puts back what was, also where the work panics.
+    struct Before(Option<Threads>);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            ASKED.set(self.0);
+        }
+    }
+    let _before = Before(ASKED.replace(Some(threads)));
+    work()
+}
+
+/// Threads of this process that run a case or work beside one.
+static BUSY: AtomicUsize = AtomicUsize::new(0);
+
+/// One of them, as long as it lives.
+pub(crate) struct Busy(());
+
+impl Busy {
+    pub(crate) fn new() -> Self {
+        BUSY.fetch_add(1, Ordering::Relaxed);
+        Self(())
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        BUSY.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Whether a core has nothing to do for this process.
+fn is_one_free() -> bool {
+    static CORES: OnceLock<usize> = OnceLock::new();
+    BUSY.load(Ordering::Relaxed) < *CORES.get_or_init(all_threads)
+}
+
+/// Looks for what is awaited before a thread sleeps: one to two milliseconds.
+const LOOKS: usize = 4000;
+
+/// What comes next, awaited awake at first; what else could run on this core does.
+///
+/// # Errors
+/// Nothing will come.
+pub fn receive<T>(from: &Receiver<T>) -> Result<T, RecvError> {
+    for _ in 0..LOOKS {
+        match from.try_recv() {
+            Ok(next) => return Ok(next),
+            Err(TryRecvError::Disconnected) => return Err(RecvError),
+            Err(TryRecvError::Empty) => std::thread::yield_now(),
+        }
+    }
+    from.recv()
+}
+
+/// Work, and the core of the thread that asks for it.
+type Work = (Box<dyn FnOnce() + Send>, Option<usize>);
+
+/// A thread that works beside that of its owner.
+pub struct SecondThread {
+    work: Sender<Work>,
+    thread: JoinHandle<()>,
+}
+
+impl SecondThread {
+    /// One on a core that is free, if there is one.
+    #[must_use]
+    pub fn spare() -> Option<Self> {
+        if !ASKED.get().map_or_else(is_one_free, |asked| asked == Threads::Two) {
+            return None;
+        }
+        let (work, come) = channel::<Work>();
+        let busy = Busy::new();
+        let run = move || {
+            let _busy = busy;
+            while let Ok((work, core)) = receive(&come) {
+                leave(core);
+                work();
+            }
+        };
+        let thread = std::thread::Builder::new().spawn(run).ok()?;
+        Some(Self { work, thread })
+    }
+
+    /// Has `work` done beside what the caller does next. Where the thread has ended nothing comes of it, which the caller learns as it waits for that.
+    pub fn begin(&self, work: impl FnOnce() + Send + 'static) {
+        let _ended = self.work.send((Box::new(work), this_core()));
+    }
+
+    /// Goes on here with the panic that ended the thread.
+    pub fn panicked(self) -> ! {
+        match self.thread.join() {
+            Err(panic) => std::panic::resume_unwind(panic),
+            Ok(()) => panic!("a second thread ended before its work"),
+        }
+    }
+}
+
+/// The core that this thread runs on, where that can be asked.
+#[cfg(target_os = "linux")]
+fn this_core() -> Option<usize> {
+    Some(rustix::thread::sched_getcpu())
+}
+
+#[cfg(not(target_os = "linux"))]
+const fn this_core() -> Option<usize> {
+    None
+}
+
+/// Goes to another core where this thread runs on the one of its owner, on which Linux starts it: it would be moved some milliseconds later.
+#[cfg(target_os = "linux")]
+fn leave(core: Option<usize>) {
+    use rustix::thread::{sched_getaffinity, sched_setaffinity};
+    let Some(core) = core.filter(|_| core == this_core()) else { return };
+    let Ok(all) = sched_getaffinity(None) else { return };
+    let mut others = all;
+    others.unset(core);
+    // Where it may not go it stays. Then it may be moved anywhere again.
+    let _refused = sched_setaffinity(None, &others);
+    let _refused = sched_setaffinity(None, &all);
+}
+
+#[cfg(not(target_os = "linux"))]
+const fn leave(_: Option<usize>) {}
