@@ -31,6 +31,7 @@ mod shaft_line;
 mod skirt_oil;
 mod tomanik;
 mod trends;
+mod two_threads;
 mod unused;
 mod validation;
 mod wear;
