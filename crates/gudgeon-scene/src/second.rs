@@ -99,15 +99,18 @@ impl SecondThread {
             return None;
         }
         let (work, come) = channel::<Work>();
-        let busy = Busy::new();
+        let (busy, owner) = (Busy::new(), this_core());
         let run = move || {
             let _busy = busy;
+            leave(owner);
             while let Ok((work, core)) = receive(&come) {
                 leave(core);
                 work();
             }
         };
         let thread = std::thread::Builder::new().spawn(run).ok()?;
+        // It can leave this core before there is work for it.
+        std::thread::yield_now();
         Some(Self { work, thread })
     }
 
