@@ -46,7 +46,7 @@ def run(command, case, changes):
     """Whether the motion is periodic, and the cycles of the search."""
     with tempfile.TemporaryDirectory() as out:
         sets = [word for change in changes for word in ("--set", change)]
-        subprocess.run([*command, "run", str(case), "--quiet", "--out", out, *sets], cwd=ROOT, capture_output=True)
+        subprocess.run([*command, "run", str(case), "--quiet", "--threads", "1", "--out", out, *sets], cwd=ROOT, capture_output=True)
         summary = json.loads((pathlib.Path(out) / "summary.json").read_text())
     periodic = all(note["topic"] != "not_periodic" or note["level"] != "failure" for note in summary["notes"])
     return periodic, summary["solver"]["counters"]["cycles"]

@@ -40,7 +40,7 @@ def run(command, changes):
     """Results, counters and the time of the search and its record [s]."""
     with tempfile.TemporaryDirectory() as out:
         sets = [word for change in changes for word in ("--set", change)]
-        subprocess.run([*command, "run", str(CASE), "--out", out, *sets], cwd=ROOT, capture_output=True, check=True)
+        subprocess.run([*command, "run", str(CASE), "--threads", "1", "--out", out, *sets], cwd=ROOT, capture_output=True, check=True)
         summary = json.loads((pathlib.Path(out) / "summary.json").read_text())
         seconds = json.loads((pathlib.Path(out) / "timing.json").read_text())["seconds"]["solve"]
     return [summary["results"][name]["value"] for name in RESULTS], summary["solver"]["counters"], seconds

@@ -26,7 +26,7 @@ def run(command, case, changes):
     """Counters of a run, and whether a note calls it a failure; nothing if it stopped."""
     with tempfile.TemporaryDirectory() as out:
         sets = [word for change in changes for word in ("--set", change)]
-        done = subprocess.run([*command, "run", str(case), "--out", out, *sets], cwd=ROOT, capture_output=True, text=True)
+        done = subprocess.run([*command, "run", str(case), "--threads", "1", "--out", out, *sets], cwd=ROOT, capture_output=True, text=True)
         if done.returncode not in (0, 1):
             print(done.stderr)
         path = pathlib.Path(out) / "summary.json"

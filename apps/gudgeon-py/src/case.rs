@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use gudgeon_case::{Report, Source};
 use gudgeon_core::file::Files;
-use gudgeon_scene::run::{run_alone, run_alone_verified, run_on, run_verified};
-use gudgeon_scene::{Checked, GradientError, check, check_source, explain};
+use gudgeon_scene::run::{run_alone, run_alone_verified, run_on, run_verified_on};
+use gudgeon_scene::{Checked, GradientError, Threads, check, check_source, explain, with_threads};
 use gudgeon_study::gradients::gradients;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -121,12 +121,13 @@ impl Case {
         let mut watch = Watch::new(progress);
         let outcome = py.detach(|| {
             let (c, tell) = (&self.checked, &mut |p| watch.tell(p));
-            match (sweeps, verify) {
-                (true, true) => run_verified(c, tell),
+            let mut run = || match (sweeps, verify) {
+                (true, true) => run_verified_on(c, threads, tell),
                 (true, false) => run_on(c, threads, tell),
                 (false, true) => run_alone_verified(c, tell),
                 (false, false) => run_alone(c, tell),
-            }
+            };
+            if threads == 1 { with_threads(Threads::One, run) } else { run() }
         });
         watch.end()?;
         Ok(Outcome::new(outcome.map_err(|e| failed(e.failure()))?))

@@ -100,6 +100,9 @@ pub struct RunArgs {
     /// Refine every numerical setting until the uncertainty of each result is known, and look for another periodic state from other starts (several runs)
     #[arg(long)]
     pub verify: bool,
+    /// Threads for the points of its sweeps, 0: one a core; with 1 the case itself does not use a second core either
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
     /// Print all results, not only those that lead
     #[arg(long)]
     pub all: bool,

@@ -13,7 +13,7 @@ use gudgeon_core::{Stopped, Stopwatch};
 use crate::error::{Progress, RunError};
 use crate::run::once;
 use crate::scene::Scene;
-use crate::second::{Threads, with_threads};
+use crate::second::{alone, limited};
 
 /// What was kept of many runs.
 #[derive(Debug)]
@@ -56,8 +56,8 @@ pub fn run_many<T: Send>(
     work: impl Fn(usize, Tell<'_>) -> T + Sync,
     progress: Tell<'_>,
 ) -> Many<T> {
-    if threads == 1 {
-        return with_threads(Threads::One, || one_by_one(count, work, progress));
+    if threads == 1 || alone() {
+        return limited(1, || one_by_one(count, work, progress));
     }
     let threads = if threads == 0 { all_threads() } else { threads }.min(count);
     let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
@@ -103,7 +103,7 @@ fn side_by_side<T: Send>(
                     if stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let row = with_threads(Threads::One, || work(k, &mut heed));
+                    let row = limited(1, || work(k, &mut heed));
                     // A point that was broken off has nothing to tell; one that ended just before the stop is told all the same.
                     if stop.load(Ordering::Relaxed) || send.send((k, row)).is_err() {
                         return;

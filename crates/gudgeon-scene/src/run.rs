@@ -11,7 +11,7 @@ use crate::explanation::{ExplainedModel, Explanation};
 use crate::foresee;
 use crate::provenance::{self, provenance};
 use crate::scene::{Scene, SceneCase, load};
-use crate::second::{Busy, Threads, with_threads};
+use crate::second::{Busy, limited};
 use crate::verify::verify;
 use crate::{sweep, sweep_input};
 
@@ -159,9 +159,7 @@ pub fn run_on(
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
     let begin = Stopwatch::start();
-    let mut run = || with_sweeps(c.case.as_ref(), threads, progress);
-    let result = if threads == 1 { with_threads(Threads::One, run) } else { run() };
-    finish(c, begin, result?)
+    finish(c, begin, limited(threads, || with_sweeps(c.case.as_ref(), threads, progress))?)
 }
 
 /// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
@@ -172,7 +170,20 @@ pub fn run_verified(
     c: &Checked,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
-    verified(c, run(c, progress)?, progress)
+    run_verified_on(c, 0, progress)
+}
+
+/// As [`run_verified`], on `threads` threads as [`run_on`].
+///
+/// # Errors
+/// As [`run_verified`].
+pub fn run_verified_on(
+    c: &Checked,
+    threads: usize,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
+    let result = run_on(c, threads, progress)?;
+    limited(threads, || verified(c, result, progress))
 }
 
 fn verified(

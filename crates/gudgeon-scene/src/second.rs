@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvError, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use crate::many::all_threads;
 
@@ -39,6 +40,16 @@ pub fn with_threads<T>(threads: Threads, work: impl FnOnce() -> T) -> T {
     work()
 }
 
+/// The same where a caller that counts threads asks for one.
+pub(crate) fn limited<T>(threads: usize, work: impl FnOnce() -> T) -> T {
+    if threads == 1 { with_threads(Threads::One, work) } else { work() }
+}
+
+/// Whether runs that begin on this thread keep to it.
+pub(crate) fn alone() -> bool {
+    ASKED.get() == Some(Threads::One)
+}
+
 /// Threads of this process that run a case or work beside one.
 static BUSY: AtomicUsize = AtomicUsize::new(0);
 
@@ -64,19 +75,34 @@ fn is_one_free() -> bool {
     BUSY.load(Ordering::Relaxed) < *CORES.get_or_init(all_threads)
 }
 
-/// Looks for what is awaited before a thread sleeps: one to two milliseconds.
-const LOOKS: usize = 4000;
+/// Looks for what is awaited before a thread sleeps: about a millisecond.
+const LOOKS: usize = 2000;
+/// Longest time between two of them when nobody else runs on this core, by far: a second thread that has to leave it takes some 50 us.
+const ELSEWHERE: Duration = Duration::from_micros(500);
+/// How often others may run in between until a second thread is given up: where all cores are busy two threads take a fifth more of them than one.
+const CROWDED: u32 = 2;
 
-/// What comes next, awaited awake at first; what else could run on this core does.
+thread_local! {
+    /// How often others ran while this thread waited.
+    static DISPLACED: Cell<u32> = const { Cell::new(0) };
+}
+
+/// What comes next, awaited awake at first, while nobody else wants this core.
 ///
 /// # Errors
 /// Nothing will come.
 pub fn receive<T>(from: &Receiver<T>) -> Result<T, RecvError> {
+    let mut looked = Instant::now();
     for _ in 0..LOOKS {
         match from.try_recv() {
             Ok(next) => return Ok(next),
             Err(TryRecvError::Disconnected) => return Err(RecvError),
             Err(TryRecvError::Empty) => std::thread::yield_now(),
+        }
+        let before = std::mem::replace(&mut looked, Instant::now());
+        if looked - before > ELSEWHERE {
+            DISPLACED.set(DISPLACED.get() + 1);
+            break;
         }
     }
     from.recv()
@@ -89,6 +115,8 @@ type Work = (Box<dyn FnOnce() + Send>, Option<usize>);
 pub struct SecondThread {
     work: Sender<Work>,
     thread: JoinHandle<()>,
+    /// How often its owner was displaced before.
+    displaced: u32,
 }
 
 impl SecondThread {
@@ -111,12 +139,18 @@ impl SecondThread {
         let thread = std::thread::Builder::new().spawn(run).ok()?;
         // It can leave this core before there is work for it.
         std::thread::yield_now();
-        Some(Self { work, thread })
+        Some(Self { work, thread, displaced: DISPLACED.get() })
     }
 
     /// Has `work` done beside what the caller does next. Where the thread has ended nothing comes of it, which the caller learns as it waits for that.
     pub fn begin(&self, work: impl FnOnce() + Send + 'static) {
         let _ended = self.work.send((Box::new(work), this_core()));
+    }
+
+    /// Whether other processes want the core of its owner, who then better goes on alone.
+    #[must_use]
+    pub fn is_crowded(&self) -> bool {
+        DISPLACED.get() - self.displaced >= CROWDED
     }
 
     /// Goes on here with the panic that ended the thread.

@@ -118,6 +118,7 @@ class Case:
     def run(self, *, sweeps: bool = True, verify: bool = False, threads: int = 0, progress: Progress | None = None) -> Result:
         """Runs the case, with the sweeps that its file declares unless ``sweeps=False``.
 
+        The points of sweeps run on ``threads`` threads (0: one a core); with 1 the case itself does not use a second core either. Results are the same to the bit.
         ``verify`` refines tolerances and grids until the numerical uncertainty of every result is known. Other Python threads go on meanwhile; Ctrl-C
         ends the run. ``progress(phase, fraction)`` hears how far it is, and ends it by answering ``False``.
 

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use gudgeon_core::result::{NoteLevel, RunResult};
 use gudgeon_scene::Checked;
+use gudgeon_scene::run::{run_on, run_verified_on};
 
 use crate::args::RunArgs;
 use crate::cmd::{checked, open_out, trends};
@@ -15,8 +16,8 @@ pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "")?;
     let mut result = {
         let bar = ui.bar();
-        let run = if a.verify { gudgeon_scene::run_verified } else { gudgeon_scene::run };
-        run(&c, &mut |p| bar.show(p))?
+        let run = if a.verify { run_verified_on } else { run_on };
+        run(&c, a.threads, &mut |p| bar.show(p))?
     };
     result.provenance.revision = env!("GUDGEON_REVISION").into();
     let files = gudgeon_report::write_run_in(&result, folder).inspect_err(|_| {

@@ -133,7 +133,7 @@ impl Waveform {
         self.before[0].clone_from(&self.films.wave);
         self.before[1].clone_from(&self.forces);
         if !self.films.part.states.is_empty()
-            && let Some(twin) = pack.twin.take()
+            && let Some(twin) = pack.twin.take().filter(|twin| !twin.thread.is_crowded())
         {
             return self.at_once((pack, twin), (y, q), rule, setting, follower);
         }
@@ -173,7 +173,7 @@ impl Waveform {
         let first = self.is_first();
         let told = (&mut self.forces, first.then_some(&mut self.retreats));
         let beside = (&*self.grooves.part, &wave);
-        let done = self.films.films(pack, begin, rule, beside, setting, told, follower);
+        let done = self.films.films(pack, (begin, rule), beside, setting, told, follower);
         self.grooves.wave = wave.into_wave();
         done?.put(&self.films.part, y, q);
         Ok(())

@@ -87,7 +87,7 @@ impl Waveform {
         let mut own = Setting { stats: &mut work, ..*setting };
         let first = self.is_first();
         let told = (&mut self.forces, first.then_some(&mut leaves));
-        let films = self.films.films(pack, &begin, films_rule, (&grooves, &wave), &mut own, told, follower);
+        let films = self.films.films(pack, (&begin, films_rule), (&grooves, &wave), &mut own, told, follower);
         let Ok(mut back) = receive(&come) else { twin.thread.panicked() };
         let counted = std::mem::take(&mut back.pack.counters);
         pack.twin = Some(Twin { pack: back.pack, ..twin });

@@ -141,7 +141,8 @@ impl Half {
         }
     }
 
-    /// Integrates gas and grooves from `y`, which see films as `films` tells, and these put the forces `forces` on the rings. Where `to` is given steps are sent there, and the wave is not kept.
+    /// Integrates gas and grooves from `y`, beside films as they were in the last cycle: their part, wave and forces on the rings. Where `to` is given the steps are sent there, and the wave is not
+    /// kept.
     pub fn grooves(
         &mut self,
         pack: &mut Pack,
@@ -182,12 +183,11 @@ impl Half {
         Ok(done)
     }
 
-    /// Integrates films from `y` beside gas and grooves, `part` and their wave; `forces` are those that films put on the rings. Tells in `leaves`, where it is given, whether a ring left the liner.
+    /// Integrates films from `y` beside gas and grooves, their part and wave. They put `forces` on the rings, and tell in `leaves`, where it is given, whether a ring left the liner.
     pub fn films(
         &mut self,
         pack: &mut Pack,
-        y: &[f64],
-        rule: Option<Rule>,
+        (y, rule): (&[f64], Option<Rule>),
         (grooves, beside): (&Part, &Growing),
         setting: &mut Setting<'_>,
         (forces, mut leaves): (&mut Track, Option<&mut bool>),
