@@ -20,6 +20,8 @@ pub enum Threads {
     One,
     /// A second one, whatever else the machine does: for measurements and tests.
     Two,
+    /// A second one that is given up at once, as where other processes want its core: for tests.
+    GivenUp,
 }
 
 thread_local! {
@@ -101,7 +103,7 @@ pub fn receive<T>(from: &Receiver<T>) -> Result<T, RecvError> {
         }
         let before = std::mem::replace(&mut looked, Instant::now());
         if looked - before > ELSEWHERE {
-            DISPLACED.set(DISPLACED.get() + 1);
+            DISPLACED.set(DISPLACED.get().wrapping_add(1));
             break;
         }
     }
@@ -123,7 +125,8 @@ impl SecondThread {
     /// One on a core that is free, if there is one.
     #[must_use]
     pub fn spare() -> Option<Self> {
-        if !ASKED.get().map_or_else(is_one_free, |asked| asked == Threads::Two) {
+        let asked = ASKED.get();
+        if !asked.map_or_else(is_one_free, |asked| asked != Threads::One) {
             return None;
         }
         let (work, come) = channel::<Work>();
@@ -139,7 +142,8 @@ impl SecondThread {
         let thread = std::thread::Builder::new().spawn(run).ok()?;
         // It can leave this core before there is work for it.
         std::thread::yield_now();
-        Some(Self { work, thread, displaced: DISPLACED.get() })
+        let given_up = if asked == Some(Threads::GivenUp) { CROWDED } else { 0 };
+        Some(Self { work, thread, displaced: DISPLACED.get().wrapping_sub(given_up) })
     }
 
     /// Has `work` done beside what the caller does next. Where the thread has ended nothing comes of it, which the caller learns as it waits for that.
@@ -150,7 +154,7 @@ impl SecondThread {
     /// Whether other processes want the core of its owner, who then better goes on alone.
     #[must_use]
     pub fn is_crowded(&self) -> bool {
-        DISPLACED.get() - self.displaced >= CROWDED
+        DISPLACED.get().wrapping_sub(self.displaced) >= CROWDED
     }
 
     /// Goes on here with the panic that ended the thread.

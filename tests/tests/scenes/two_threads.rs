@@ -34,8 +34,9 @@ fn halves_at_once_tell_what_they_tell_in_turn() {
         ("turbo-diesel-120", &[HALVES[0], HALVES[1], "solver.limits.max_steps=300"]),
     ];
     for (case, set) in cases {
-        let [one, two] = [Threads::One, Threads::Two].map(|threads| told(threads, case, set));
-        assert!(one == two, "{case} {set:?}");
+        let [one, two, given_up] =
+            [Threads::One, Threads::Two, Threads::GivenUp].map(|threads| told(threads, case, set));
+        assert!(one == two && one == given_up, "{case} {set:?}");
     }
 }
 

@@ -133,7 +133,7 @@ impl Waveform {
         self.before[0].clone_from(&self.films.wave);
         self.before[1].clone_from(&self.forces);
         if !self.films.part.states.is_empty()
-            && let Some(twin) = pack.twin.take().filter(|twin| !twin.thread.is_crowded())
+            && let Some(twin) = pack.twin.take()
         {
             return self.at_once((pack, twin), (y, q), rule, setting, follower);
         }

@@ -81,7 +81,13 @@ impl Waveform {
             to,
         };
         // Where nobody waits for it any more its owner panicked.
-        twin.thread.begin(move || drop(done.send(task.run())));
+        let run = move || drop(done.send(task.run()));
+        // The twin remembers what rings did in their last stage: gas and grooves stay with it.
+        if twin.thread.is_crowded() {
+            run()
+        } else {
+            twin.thread.begin(run)
+        }
         let wave = Growing::begin(std::mem::take(&mut self.beside), grooves.width(), more);
         let (mut work, mut leaves) = (Stats::default(), false);
         let mut own = Setting { stats: &mut work, ..*setting };
