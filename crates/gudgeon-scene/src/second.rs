@@ -78,7 +78,10 @@ fn is_one_free() -> bool {
 }
 
 /// Looks for what is awaited before a thread sleeps: about a millisecond.
-const LOOKS: usize = 2000;
+const LOOKS: usize = 1000;
+/// Looks after which others that wait for this core may run, and idle instructions before each of the rest: these leave the core to its other hardware thread.
+const YIELDS: usize = 8;
+const IDLE: usize = 32;
 /// Longest time between two of them when nobody else runs on this core, by far: a second thread that has to leave it takes some 50 us.
 const ELSEWHERE: Duration = Duration::from_micros(500);
 /// How often others may run in between until a second thread is given up: where all cores are busy two threads take a fifth more of them than one.
@@ -95,11 +98,12 @@ thread_local! {
 /// Nothing will come.
 pub fn receive<T>(from: &Receiver<T>) -> Result<T, RecvError> {
     let mut looked = Instant::now();
-    for _ in 0..LOOKS {
+    for look in 0..LOOKS {
         match from.try_recv() {
             Ok(next) => return Ok(next),
             Err(TryRecvError::Disconnected) => return Err(RecvError),
-            Err(TryRecvError::Empty) => std::thread::yield_now(),
+            Err(TryRecvError::Empty) if look.is_multiple_of(YIELDS) => std::thread::yield_now(),
+            Err(TryRecvError::Empty) => (0..IDLE).for_each(|_| std::hint::spin_loop()),
         }
         let before = std::mem::replace(&mut looked, Instant::now());
         if looked - before > ELSEWHERE {
