@@ -1,6 +1,7 @@
 //! One run on two threads.
 
-use gudgeon_scene::{SecondThread, Threads, receive, run, unwatched, with_threads};
+use gudgeon_scene::many::run_many;
+use gudgeon_scene::{Progress, SecondThread, Stopped, Threads, receive, run, unwatched, with_threads};
 
 use crate::common::checked;
 
@@ -47,6 +48,23 @@ fn a_second_thread_is_there_where_it_is_asked_for() {
     // What was asked for holds within, not after.
     let within = with_threads(Threads::Two, || (spare(Threads::One), SecondThread::spare().is_some()));
     assert_eq!(within, (false, true));
+}
+
+/// Whether a run that begins where it is asked would have a second thread.
+fn none_is_spare(_: Progress) -> Result<(), Stopped> {
+    assert!(SecondThread::spare().is_none());
+    Ok(())
+}
+
+#[test]
+fn one_thread_is_one() {
+    let c = checked("rigs/slider-barrel", &[]);
+    with_threads(Threads::Two, || {
+        run::run_on(&c, 1, &mut none_is_spare).expect("it runs");
+        run::run_verified_on(&c, 1, &mut none_is_spare).expect("it runs");
+        let rows = |threads| run_many(4, threads, |_, _| SecondThread::spare().is_none(), &mut unwatched);
+        assert_eq!([rows(1).rows, rows(2).rows], [vec![Some(true); 4], vec![Some(true); 4]]);
+    });
 }
 
 #[test]

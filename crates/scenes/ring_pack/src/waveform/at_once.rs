@@ -1,7 +1,7 @@
 //! Both halves of a cycle at once, gas and grooves in a second thread.
 //!
 //! Films follow gas and grooves through the cycle ([`super::growing`]). Neither half asks for anything that it would not have when they come one after the other: results are the same
-//! to the bit. What a half changes is kept apart until it is known that the other one came to its end.
+//! to the bit. What films change is undone where gas and grooves fail, for in turn they would not have begun.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
